@@ -8,6 +8,7 @@
 
 pub mod distribution;
 pub mod elementary;
+pub mod filter;
 pub mod frame;
 pub mod pdf;
 pub mod spectrum;
@@ -18,6 +19,7 @@ pub mod vector;
 pub mod warp;
 
 pub use distribution::{Distribution1d, Distribution2d};
+pub use filter::Filter;
 pub use frame::Frame;
 pub use pdf::{AreaPdf, Mass, SolidAnglePdf};
 pub use spectrum::{Rgb, Spectrum, Wavelengths};

@@ -1,0 +1,144 @@
+use std::sync::Arc;
+
+use caustica_math::Rgb;
+use serde::{Deserialize, Serialize};
+
+use crate::Origin;
+
+/// The index of an image in [`super::Description::images`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ImageId(pub u32);
+
+/// The index of a material in [`super::Description::materials`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MaterialId(pub u32);
+
+/// A linear RGB image in rows from the top.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Image {
+    /// Width in pixels, at least 1.
+    pub width: u32,
+    /// Height in pixels, at least 1.
+    pub height: u32,
+    /// `width`·`height` pixels, linear.
+    pub pixels: Arc<[Rgb]>,
+}
+
+/// A colour that may vary over a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Texture {
+    /// The same everywhere.
+    Constant(Rgb),
+    /// Two colours by the parity of floor(u/scale.x − delta.x) + floor(v/scale.y − delta.y); even is
+    /// `value1`.
+    Checkerboard {
+        /// Offset.
+        delta: [f32; 2],
+        /// Size of a field.
+        scale: [f32; 2],
+        /// Colour of the even fields.
+        value1: Rgb,
+        /// Colour of the odd fields.
+        value2: Rgb,
+    },
+    /// An image, repeated, bilinear, with v = 0 at its lower edge.
+    Image {
+        /// The image.
+        image: ImageId,
+        /// How uv coordinates are placed on it.
+        transform: TextureTransform,
+    },
+}
+
+impl From<Rgb> for Texture {
+    fn from(c: Rgb) -> Self {
+        Self::Constant(c)
+    }
+}
+
+/// uv · scale + offset, before the look-up.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TextureTransform {
+    /// Factor on u and v.
+    pub scale: [f32; 2],
+    /// Added after scaling.
+    pub offset: [f32; 2],
+}
+
+impl Default for TextureTransform {
+    fn default() -> Self {
+        Self { scale: [1.0; 2], offset: [0.0; 2] }
+    }
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// What it is.
+    pub kind: MaterialKind,
+    /// Where it stands in the file.
+    pub origin: Option<Origin>,
+}
+
+/// How a surface scatters light. The side of the normal is "outside" (`exterior_ior`), the other
+/// "inside".
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum MaterialKind {
+    /// Lambertian, on the side of the normal; black on the other.
+    Diffuse {
+        /// Reflectance.
+        albedo: Texture,
+    },
+    /// A perfect mirror on the side of the normal; black on the other.
+    Mirror {
+        /// Reflectance.
+        reflectance: Rgb,
+    },
+    /// A smooth interface between two transparent media.
+    Dielectric {
+        /// Index of refraction inside.
+        interior_ior: f32,
+        /// Index of refraction outside.
+        exterior_ior: f32,
+    },
+    /// A GGX interface between two transparent media.
+    RoughDielectric {
+        /// Roughness α of GGX.
+        alpha: f32,
+        /// Index of refraction inside.
+        interior_ior: f32,
+        /// Index of refraction outside.
+        exterior_ior: f32,
+    },
+    /// A smooth metal on the side of the normal.
+    Conductor {
+        /// Real part of the index, relative to the outside.
+        eta: Rgb,
+        /// Imaginary part of the index (extinction), relative to the outside.
+        k: Rgb,
+        /// Factor on the reflectance.
+        reflectance: Rgb,
+    },
+    /// A GGX metal on the side of the normal.
+    RoughConductor {
+        /// Roughness α of GGX.
+        alpha: f32,
+        /// Real part of the index, relative to the outside.
+        eta: Rgb,
+        /// Imaginary part of the index (extinction), relative to the outside.
+        k: Rgb,
+        /// Factor on the reflectance.
+        reflectance: Rgb,
+    },
+    /// Nori's `microfacet`: a diffuse base and a Beckmann specular lobe of weight 1 − max(kd).
+    Microfacet {
+        /// Roughness α of Beckmann.
+        alpha: f32,
+        /// Index of refraction inside.
+        interior_ior: f32,
+        /// Index of refraction outside.
+        exterior_ior: f32,
+        /// Diffuse reflectance.
+        kd: Texture,
+    },
+}

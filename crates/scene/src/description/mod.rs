@@ -1,0 +1,54 @@
+//! The description of a scene: plain owned data that readers produce and users edit.
+//!
+//! Units are SI: lengths in metres, radiance in W·m⁻²·sr⁻¹, intensity in W·sr⁻¹, irradiance in W·m⁻²;
+//! angles are in degrees. Colours are linear BT.709 RGB.
+
+mod camera;
+mod integrator;
+mod light;
+mod material;
+mod shape;
+
+use serde::{Deserialize, Serialize};
+
+pub use camera::{Camera, CameraKind, Crop, FilmSettings};
+pub use caustica_math::Filter;
+pub use integrator::{Integrator, Technique};
+pub use light::{Light, LightKind};
+pub use material::{Image, ImageId, Material, MaterialId, MaterialKind, Texture, TextureTransform};
+pub use shape::{Geometry, Mesh, Shape};
+
+/// A whole scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Description {
+    /// The eye.
+    pub camera: Camera,
+    /// The picture's size, crop and pixel filter.
+    pub film: FilmSettings,
+    /// The algorithm that the scene asks for.
+    pub integrator: Integrator,
+    /// Samples per pixel that the scene asks for.
+    pub samples: u32,
+    /// Images, named by textures and environment maps.
+    pub images: Vec<Image>,
+    /// Materials, named by shapes.
+    pub materials: Vec<Material>,
+    /// Surfaces, with their materials and, for lamps, their emission.
+    pub shapes: Vec<Shape>,
+    /// Lamps that are not surfaces.
+    pub lights: Vec<Light>,
+}
+
+impl Description {
+    /// Adds a material and returns its id.
+    pub fn add_material(&mut self, kind: MaterialKind) -> MaterialId {
+        self.materials.push(Material { kind, origin: None });
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// Adds an image and returns its id.
+    pub fn add_image(&mut self, image: Image) -> ImageId {
+        self.images.push(image);
+        ImageId(self.images.len() as u32 - 1)
+    }
+}
