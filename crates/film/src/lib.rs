@@ -1,1 +1,25 @@
-//! film
+//! What light is gathered on, and what becomes of it.
+//!
+//! A [`Film`] adds contributions up as integers, so that any order, any number of threads and any
+//! grouping of merged films give the same bits. [`Film::develop`] turns its sums into a [`Picture`] of
+//! two layers, which [`write_exr`] keeps losslessly and [`write_png`] shows. Files are replaced whole
+//! or not at all.
+
+mod display;
+mod error;
+mod film;
+mod layout;
+mod openexr;
+mod output;
+mod picture;
+mod quantum;
+mod tonemap;
+
+pub use display::{Develop, write_png};
+pub use error::FilmError;
+pub use film::{Film, FilmCounts};
+pub use layout::{FilmLayout, Window};
+pub use openexr::{Metadata, read_exr, write_exr};
+pub use output::check_writable;
+pub use picture::{LightImage, Picture};
+pub use tonemap::{ToneMap, to_display};

@@ -1,1 +1,65 @@
-//! import
+//! Scene files to descriptions: Nori's XML, Wavefront OBJ meshes, and PNG, JPEG and OpenEXR images.
+//!
+//! Whatever is wrong with a file is told with its line and column where it has any; no file makes these
+//! readers panic, hang or allocate without bound.
+
+mod files;
+mod image;
+mod nori;
+mod obj;
+mod source;
+mod suggest;
+
+use std::path::Path;
+
+use caustica_scene::{Description, Diagnostic};
+
+pub use image::{ReadImage, read_image};
+pub use nori::{SceneTest, TestKind};
+pub use obj::{ObjMesh, load_obj, read_obj};
+
+/// What a scene file holds.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene, if the file describes one beside its tests.
+    pub scene: Option<Description>,
+    /// The statistical tests that the file carries, in its order.
+    pub tests: Vec<SceneTest>,
+    /// What is worth knowing.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The most bytes that a scene file may have.
+const LARGEST_SCENE_FILE: u64 = 64 << 20;
+
+/// Reads a scene file and all files that it names.
+pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
+    let name = path.display().to_string();
+    let bytes = files::read(path, LARGEST_SCENE_FILE)
+        .map_err(|why| Diagnostic::error(format!("cannot read the scene `{name}`: {why}")))?;
+    let text = match std::str::from_utf8(&bytes) {
+        Ok(text) => text,
+        Err(error) => {
+            let valid = error.valid_up_to();
+            // What precedes the error is UTF-8, so that nothing is replaced in it.
+            let origin =
+                source::Source::new(&name, &String::from_utf8_lossy(&bytes[..valid])).origin(valid..valid);
+            return Err(Diagnostic::error("this is not UTF-8 text")
+                .at(Some(origin))
+                .hint("save the file with the encoding UTF-8"));
+        }
+    };
+    parse_nori(text, &name, path.parent().unwrap_or(Path::new("")))
+}
+
+/// Reads a scene from the text of a Nori scene file. `file_name` is for messages; relative paths start
+/// at `base_dir`.
+pub fn parse_nori(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded, Diagnostic> {
+    if text.len() as u64 > LARGEST_SCENE_FILE {
+        return Err(Diagnostic::error(format!(
+            "`{file_name}` is larger than {} MiB",
+            LARGEST_SCENE_FILE >> 20
+        )));
+    }
+    nori::read(&source::Source::new(file_name, text), base_dir)
+}

@@ -85,8 +85,7 @@ impl Distribution2d {
     /// From `width`·`height` non-negative weights, row by row. `None` if all are zero.
     pub fn new(weights: &[f32], width: usize) -> Option<Self> {
         let rows: Vec<_> = weights.chunks_exact(width).map(Distribution1d::new).collect();
-        let sums: Vec<f32> =
-            rows.iter().map(|r| r.as_ref().map_or(0.0, |r| r.total() as f32)).collect();
+        let sums: Vec<f32> = rows.iter().map(|r| r.as_ref().map_or(0.0, |r| r.total() as f32)).collect();
         Some(Self { marginal: Distribution1d::new(&sums)?, rows, width })
     }
 
@@ -97,8 +96,7 @@ impl Distribution2d {
         let Some(distribution) = &self.rows[row.index] else { return (u, 0.0) };
         let column = distribution.sample(u[0]);
         let (w, h) = (self.width as f32, self.rows.len() as f32);
-        let point =
-            [(column.index as f32 + column.remapped) / w, (row.index as f32 + row.remapped) / h];
+        let point = [(column.index as f32 + column.remapped) / w, (row.index as f32 + row.remapped) / h];
         (point.map(|c| c.min(ONE_BELOW)), column.mass.0 * row.mass.0 * w * h)
     }
 
@@ -107,9 +105,7 @@ impl Distribution2d {
         let (w, h) = (self.width, self.rows.len());
         let column = ((p[0] * w as f32) as usize).min(w - 1);
         let row = ((p[1] * h as f32) as usize).min(h - 1);
-        self.rows[row].as_ref().map_or(0.0, |r| {
-            r.mass(column).0 * self.marginal.mass(row).0 * (w * h) as f32
-        })
+        self.rows[row].as_ref().map_or(0.0, |r| r.mass(column).0 * self.marginal.mass(row).0 * (w * h) as f32)
     }
 }
 

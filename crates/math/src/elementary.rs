@@ -76,8 +76,8 @@ pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
     let quarter = (turns * 4.0 + 0.5).floor();
     let x = (turns * 4.0 - quarter) * FRAC_PI_2;
     let x2 = x * x;
-    let sin = x * (1.0
-        + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
+    let sin =
+        x * (1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
     let cos = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40320.0))));
     match quarter as i32 & 3 {
         0 => (sin, cos),

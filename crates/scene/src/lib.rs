@@ -1,9 +1,21 @@
 //! Scenes: what the user describes, and what rays run on.
 //!
 //! - [`description`]: owned, serialisable, user-level. Readers produce it, users edit it.
+//! - [`scene::Scene`]: flat tables and `u32` ids made from it, with [`surface`]s, [`bsdf`]s, [`light`]s, the
+//!   [`camera`] and the ray-intersection tree ([`bvh`]).
 
+pub mod bsdf;
+pub mod bvh;
+pub mod camera;
 pub mod description;
 pub mod diagnostic;
+pub mod light;
+mod material;
+pub mod scene;
+pub mod surface;
+pub mod texture;
+mod warnings;
 
 pub use description::Description;
 pub use diagnostic::{Diagnostic, Origin, Severity};
+pub use scene::Scene;

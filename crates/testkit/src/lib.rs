@@ -1,1 +1,6 @@
-//! testkit
+//! Tools for the tests of the other crates: statistical harnesses, small scenes, agreement tests.
+
+pub mod agreement;
+pub mod build;
+pub mod chi_square;
+pub mod scenes;

@@ -1,1 +1,22 @@
-//! transport
+//! Light transport: vertices, edges, strategies, weights, and the integrators made of them.
+//!
+//! Everything is evaluated as light travels, whichever walk asks (see [`vertex`]); densities change their
+//! measure in one place ([`edge`]); and a weight is a pure function of densities ([`weight`]).
+//! [`Kernel::sample`] renders one sample of one pixel and hands what it finds to a [`Sink`].
+
+mod bdpt;
+mod direct_views;
+pub mod edge;
+mod kernel;
+mod light_tracer;
+mod path_tracer;
+pub mod sink;
+pub mod strategy;
+pub mod vertex;
+mod walk;
+pub mod weight;
+
+pub use kernel::{Kernel, Scratch, Settings};
+pub use sink::{Contribution, PathView, Sink};
+pub use strategy::{Strategy, StrategySet};
+pub use weight::Heuristic;

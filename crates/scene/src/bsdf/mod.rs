@@ -4,7 +4,24 @@
 //! Evaluation is in the one physical orientation, as light travels: from where `to_light` points, out to
 //! where `to_camera` points, whichever walk asks.
 
+pub mod conductor;
+pub mod diffuse;
+pub mod fresnel;
+pub mod ggx;
+pub mod metals;
+pub mod microfacet;
+pub mod rough_dielectric;
+pub mod specular;
+
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3};
+
+pub use conductor::{Conductor, RoughConductor};
+pub use diffuse::Diffuse;
+pub use microfacet::Microfacet;
+pub use rough_dielectric::RoughDielectric;
+pub use specular::Dielectric;
+
+use specular::sample_mirror;
 
 /// The direction in which a path is being traced. (Light itself always travels to the camera.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,4 +61,123 @@ pub struct Scattered {
     pub reverse_pdf: SolidAnglePdf,
     /// Whether it came from a Dirac lobe.
     pub delta: bool,
+}
+
+/// How a point of a surface scatters light: a material with its textures looked up. Sides are told by the
+/// shading normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bsdf {
+    /// Lambertian.
+    Diffuse(Diffuse),
+    /// A perfect mirror on the side of the normal; black on the other.
+    Mirror {
+        /// The reflected share, in [0, 1].
+        reflectance: Spectrum,
+    },
+    /// A smooth interface between two dielectrics.
+    Dielectric(Dielectric),
+    /// A rough interface between two dielectrics.
+    RoughDielectric(RoughDielectric),
+    /// A smooth metal.
+    Conductor(Conductor),
+    /// A rough metal.
+    RoughConductor(RoughConductor),
+    /// Nori's plastic.
+    Microfacet(Microfacet),
+}
+
+// One lies in every path vertex: a cache line and no more.
+const _: () = assert!(size_of::<Bsdf>() <= 64);
+
+impl Bsdf {
+    /// Evaluates all but the Dirac lobes.
+    #[inline]
+    pub fn eval(&self, to_light: Vec3, to_camera: Vec3) -> Evaluated {
+        match self {
+            Self::Diffuse(b) => b.eval(to_light, to_camera),
+            Self::RoughDielectric(b) => b.eval(to_light, to_camera),
+            Self::RoughConductor(b) => b.eval(to_light, to_camera),
+            Self::Microfacet(b) => b.eval(to_light, to_camera),
+            Self::Mirror { .. } | Self::Dielectric(_) | Self::Conductor(_) => Evaluated::default(),
+        }
+    }
+
+    /// Samples the direction that is not `given`: `given` is `to_camera` if the walk is from the camera, and
+    /// `to_light` if it is from the light. `u` is uniform in [0, 1)³.
+    ///
+    /// `None` if light is absorbed or the sample failed; its densities are never zero.
+    #[inline]
+    pub fn sample(&self, walk: Walk, given: Vec3, u: [f32; 3]) -> Option<Scattered> {
+        let direction = match self {
+            Self::Mirror { reflectance } => return lit(sample_mirror(*reflectance, given)?),
+            Self::Conductor(b) => return lit(b.sample(given)?),
+            Self::Dielectric(b) => return lit(b.sample(walk, given, u)?),
+            Self::RoughDielectric(b) if b.is_matched() => return lit(b.sample_matched(walk, given, u)?),
+            Self::Diffuse(b) => b.sample_direction(given, u),
+            Self::RoughDielectric(b) => b.sample_direction(given, u),
+            Self::RoughConductor(b) => b.sample_direction(given, u),
+            Self::Microfacet(b) => b.sample_direction(given, u),
+        }?;
+        // Evaluated like any other pair, so that the densities agree with `eval` to the bit.
+        let (evaluated, pdf, reverse_pdf) = match walk {
+            Walk::FromCamera => {
+                let e = self.eval(direction, given);
+                (e, e.to_light_pdf, e.to_camera_pdf)
+            }
+            Walk::FromLight => {
+                let e = self.eval(given, direction);
+                (e, e.to_camera_pdf, e.to_light_pdf)
+            }
+        };
+        // Dividing by a subnormal density would overflow.
+        if pdf.get() < f32::MIN_POSITIVE {
+            return None;
+        }
+        lit(Scattered { direction, value: evaluated.value, pdf, reverse_pdf, delta: false })
+    }
+
+    /// Whether all of it is Dirac: such a surface can never be connected to.
+    #[inline]
+    pub fn is_delta(&self) -> bool {
+        match self {
+            Self::Mirror { .. } | Self::Dielectric(_) | Self::Conductor(_) => true,
+            Self::RoughDielectric(b) => b.is_matched(),
+            Self::Diffuse(_) | Self::RoughConductor(_) | Self::Microfacet(_) => false,
+        }
+    }
+
+    /// The factor by which passing from the side of `to_light` to that of `to_camera` scales radiance, given
+    /// the cosines of the two: (n_camera/n_light)², or one on the same side.
+    #[inline]
+    pub fn radiance_scale(&self, to_light_cos: f32, to_camera_cos: f32) -> f32 {
+        if to_light_cos * to_camera_cos > 0.0 {
+            return 1.0;
+        }
+        let (interior, exterior) = match self {
+            Self::Dielectric(b) => (b.interior_ior, b.exterior_ior),
+            Self::RoughDielectric(b) => b.indices(),
+            _ => return 1.0,
+        };
+        let ratio = if to_light_cos > 0.0 { interior / exterior } else { exterior / interior };
+        ratio * ratio
+    }
+
+    /// Whether light can pass from one side to the other.
+    #[inline]
+    pub fn transmits(&self) -> bool {
+        match self {
+            Self::Dielectric(_) | Self::RoughDielectric(_) => true,
+            Self::Diffuse(_)
+            | Self::Mirror { .. }
+            | Self::Conductor(_)
+            | Self::RoughConductor(_)
+            | Self::Microfacet(_) => false,
+        }
+    }
+}
+
+/// A sample that carries no light is absorbed.
+#[inline]
+fn lit(s: Scattered) -> Option<Scattered> {
+    (!s.value.is_black()).then_some(s)
 }

@@ -1,0 +1,270 @@
+//! The film: exact sums of contributions.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
+
+use caustica_math::filter::PixelFilter;
+use caustica_math::stream::mix64;
+use caustica_math::{Rgb, Vec2};
+use serde::{Deserialize, Serialize};
+
+use crate::FilmError;
+use crate::layout::FilmLayout;
+use crate::picture::Picture;
+use crate::quantum::Quantum;
+
+/// More pixels than this are refused without asking for the memory.
+const MOST_PIXELS: u64 = 1 << 31;
+
+/// Three channels of the eye image, then three of the light image.
+type Sums = [AtomicI64; 6];
+const EYE: usize = 0;
+const LIGHT: usize = 3;
+
+/// How much went into a film.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FilmCounts {
+    /// Samples per pixel of the eye image.
+    pub eye_samples: u64,
+    /// Passes of light paths of the light image.
+    pub light_samples: u64,
+    /// Contributions that were skipped because they were not finite.
+    pub invalid: u64,
+    /// Contributions to a pixel that were too large for the quantum, and were clamped.
+    pub clamped: u64,
+}
+
+/// Sums of contributions to the pixels of a window, in two layers.
+///
+/// Contributions are added as whole numbers of a quantum. Whole numbers add up the same in any order,
+/// so a film depends on what was added and on nothing else: not on threads, not on splits, not on the
+/// order of merging. It is filled through shared references, from any number of threads at once.
+#[derive(Debug)]
+pub struct Film {
+    layout: FilmLayout,
+    quantum: Quantum,
+    pixels: Vec<Sums>,
+    eye_samples: AtomicU64,
+    light_samples: AtomicU64,
+    invalid: AtomicU64,
+    clamped: AtomicU64,
+}
+
+impl Film {
+    /// An empty film. Sizes that make no sense or need more memory than there is are errors.
+    pub fn new(layout: FilmLayout) -> Result<Self, FilmError> {
+        layout.check()?;
+        let window = layout.window;
+        let too_large = || FilmError::TooLarge {
+            width: window.width,
+            height: window.height,
+            megabytes: (window.pixels() * size_of::<Sums>() as u64).div_ceil(1_000_000),
+        };
+        let count = match usize::try_from(window.pixels()) {
+            Ok(count) if window.pixels() <= MOST_PIXELS => count,
+            _ => return Err(too_large()),
+        };
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| too_large())?;
+        pixels.resize_with(count, Sums::default);
+        Ok(Self {
+            layout,
+            quantum: Quantum::new(layout.quantum_exponent),
+            pixels,
+            eye_samples: AtomicU64::new(0),
+            light_samples: AtomicU64::new(0),
+            invalid: AtomicU64::new(0),
+            clamped: AtomicU64::new(0),
+        })
+    }
+
+    /// A film with the sums and counts of an earlier one.
+    pub fn restore(layout: FilmLayout, sums: &[[i64; 6]], counts: FilmCounts) -> Result<Self, FilmError> {
+        let mut film = Self::new(layout)?;
+        if sums.len() != film.pixels.len() {
+            let expected = film.pixels.len();
+            return Err(FilmError::Layout(format!("sums of {} pixels for a film of {expected}", sums.len())));
+        }
+        for (pixel, saved) in film.pixels.iter_mut().zip(sums) {
+            *pixel = saved.map(AtomicI64::new);
+        }
+        film.add_counts(counts);
+        Ok(film)
+    }
+
+    /// The film's sizes.
+    pub fn layout(&self) -> &FilmLayout {
+        &self.layout
+    }
+
+    /// Adds to the eye image at a pixel of the full picture. Outside of the window: nothing.
+    #[inline]
+    pub fn add_eye(&self, pixel: [u32; 2], value: Rgb) {
+        if let Some(index) = self.layout.window.index(pixel) {
+            if is_finite(value) {
+                self.add(&self.pixels[index], EYE, pixel, value);
+            } else {
+                self.invalid.fetch_add(1, Relaxed);
+            }
+        }
+    }
+
+    /// Adds to the light image around `position`, in pixels of the full picture: pixel (i, j) covers
+    /// [i, i + 1) × [j, j + 1).
+    ///
+    /// Each pixel of the window within the filter's radius gets `value` times the filter's density
+    /// there. The filter is not normalised anew where it sticks out of the window: what falls outside
+    /// belongs to pixels that this film does not hold.
+    pub fn splat_light(&self, filter: &PixelFilter, position: Vec2, value: Rgb) {
+        if !(is_finite(value) && position.x.is_finite() && position.y.is_finite()) {
+            self.invalid.fetch_add(1, Relaxed);
+            return;
+        }
+        let window = self.layout.window;
+        let columns = reach(position.x, filter.radius(), window.x, window.width);
+        for y in reach(position.y, filter.radius(), window.y, window.height) {
+            let row = filter.eval_axis(y as f32 + 0.5 - position.y);
+            let start = (y - window.y) as usize * window.width as usize;
+            for x in columns.clone() {
+                let density = filter.eval_axis(x as f32 + 0.5 - position.x) * row;
+                if density != 0.0 {
+                    let pixel = &self.pixels[start + (x - window.x) as usize];
+                    self.add(pixel, LIGHT, [x, y], value * density);
+                }
+            }
+        }
+    }
+
+    /// Adds a finite value to three sums of one pixel.
+    #[inline]
+    fn add(&self, sums: &Sums, layer: usize, [x, y]: [u32; 2], value: Rgb) {
+        // The index in the full picture, so that a crop gets the bits that the whole would have there.
+        let index = u64::from(y) * u64::from(self.layout.width) + u64::from(x);
+        let (counts, clamped) = self.quantum.count(value, index);
+        for (sum, count) in sums[layer..layer + 3].iter().zip(counts) {
+            if count != 0 {
+                sum.fetch_add(count, Relaxed);
+            }
+        }
+        if clamped {
+            self.clamped.fetch_add(1, Relaxed);
+        }
+    }
+
+    /// Records that every pixel of the eye image has had `eye` more samples, and the light image
+    /// `light` more passes.
+    pub fn finish_samples(&self, eye: u64, light: u64) {
+        self.add_counts(FilmCounts { eye_samples: eye, light_samples: light, ..FilmCounts::default() });
+    }
+
+    fn add_counts(&self, counts: FilmCounts) {
+        self.eye_samples.fetch_add(counts.eye_samples, Relaxed);
+        self.light_samples.fetch_add(counts.light_samples, Relaxed);
+        self.invalid.fetch_add(counts.invalid, Relaxed);
+        self.clamped.fetch_add(counts.clamped, Relaxed);
+    }
+
+    /// How much went into the film.
+    pub fn counts(&self) -> FilmCounts {
+        FilmCounts {
+            eye_samples: self.eye_samples(),
+            light_samples: self.light_samples(),
+            invalid: self.invalid(),
+            clamped: self.clamped(),
+        }
+    }
+
+    /// Samples per pixel of the eye image.
+    pub fn eye_samples(&self) -> u64 {
+        self.eye_samples.load(Relaxed)
+    }
+
+    /// Passes of light paths of the light image.
+    pub fn light_samples(&self) -> u64 {
+        self.light_samples.load(Relaxed)
+    }
+
+    /// Contributions that were skipped because they were not finite.
+    pub fn invalid(&self) -> u64 {
+        self.invalid.load(Relaxed)
+    }
+
+    /// Contributions to a pixel that were too large for the quantum, and were clamped.
+    pub fn clamped(&self) -> u64 {
+        self.clamped.load(Relaxed)
+    }
+
+    /// Adds all that went into `other`, a film of the same layout.
+    pub fn merge(&self, other: &Film) -> Result<(), FilmError> {
+        if self.layout != other.layout {
+            return Err(FilmError::Layout(format!(
+                "films of different layouts cannot be merged: {:?} and {:?}",
+                self.layout, other.layout
+            )));
+        }
+        for (ours, theirs) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()) {
+            ours.fetch_add(theirs.load(Relaxed), Relaxed);
+        }
+        self.add_counts(other.counts());
+        Ok(())
+    }
+
+    /// The sums in quanta, pixel by pixel: three channels of the eye image, then three of the light
+    /// image. With [`Film::counts`], all that [`Film::restore`] needs.
+    pub fn sums(&self) -> impl ExactSizeIterator<Item = [i64; 6]> {
+        self.pixels.iter().map(|pixel| pixel.each_ref().map(|sum| sum.load(Relaxed)))
+    }
+
+    /// Whether two films have the same layout, sums and counts.
+    pub fn bits_equal(&self, other: &Film) -> bool {
+        self.layout == other.layout && self.counts() == other.counts() && self.sums().eq(other.sums())
+    }
+
+    /// A hash of the layout, the sums and the counts.
+    pub fn fingerprint(&self) -> u64 {
+        let FilmLayout { width, height, window, quantum_exponent } = self.layout;
+        let counts = self.counts();
+        let head = [width, height, window.x, window.y, window.width, window.height, quantum_exponent as u32];
+        let tail = [counts.eye_samples, counts.light_samples, counts.invalid, counts.clamped];
+        let sums = self.sums().flatten().map(|sum| sum as u64);
+        let mix = |hash: u64, word: u64| mix64(hash.wrapping_mul(3).wrapping_add(1) ^ word);
+        head.into_iter().map(u64::from).chain(tail).chain(sums).fold(0, mix)
+    }
+
+    /// The picture so far: each layer divided by its own count. A layer without samples is black.
+    pub fn develop(&self) -> Picture {
+        let counts = self.counts();
+        let layer = |first: usize, samples: u64| {
+            let scale = if samples == 0 { 0.0 } else { self.quantum.size() / samples as f64 };
+            let develop = |sum: i64| (sum as f64 * scale) as f32;
+            self.sums().map(|s| Rgb([s[first], s[first + 1], s[first + 2]].map(develop))).collect()
+        };
+        Picture {
+            width: self.layout.width,
+            height: self.layout.height,
+            window: self.layout.window,
+            eye_samples: counts.eye_samples,
+            light_samples: counts.light_samples,
+            eye: layer(EYE, counts.eye_samples),
+            light: layer(LIGHT, counts.light_samples),
+        }
+    }
+}
+
+#[inline]
+fn is_finite(value: Rgb) -> bool {
+    value.0.iter().all(|c| c.is_finite())
+}
+
+/// The pixels from `start` on, `count` of them, whose centres lie within `radius` of `position`.
+/// Rounding can only add a pixel, for which the filter then gives zero.
+#[inline]
+fn reach(position: f32, radius: f32, start: u32, count: u32) -> Range<u32> {
+    let end = start + count;
+    let first = (position - radius - 0.5).ceil().clamp(start as f32, end as f32);
+    let last = (position + radius - 0.5).floor().clamp(start as f32 - 1.0, end as f32 - 1.0);
+    first as u32..(last + 1.0) as u32
+}
+
+#[cfg(test)]
+mod tests;

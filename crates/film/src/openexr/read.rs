@@ -1,0 +1,144 @@
+//! Reading.
+
+use std::fs::File;
+use std::io::{BufReader, Seek};
+use std::path::Path;
+
+use caustica_math::Rgb;
+use exr::meta::header::Header;
+use exr::prelude::{
+    AttributeValue, MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, attribute::ChannelList,
+    read,
+};
+
+use super::{LAYERS, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
+use crate::FilmError;
+use crate::layout::{Window, check_window};
+use crate::picture::Picture;
+
+/// No compression of the format packs lossless pixels closer than this (deflate reaches 1032 to 1).
+const CLOSEST_PACKING: u64 = 1100;
+
+/// Reads a picture that [`write_exr`](super::write_exr) wrote, and what is known about it. The layers
+/// `eye` and `light` must be there; anything else in the file is passed over.
+pub fn read_exr(path: &Path) -> Result<(Picture, Metadata), FilmError> {
+    let io = |e| FilmError::io(path, e);
+    let mut file = File::open(path).map_err(io)?;
+    let length = file.metadata().map_err(io)?.len();
+    let meta =
+        MetaData::read_from_buffered(BufReader::new(&mut file), false).map_err(|e| explain(path, e))?;
+    let bad = |message: String| FilmError::format(path, message);
+    let [header] = meta.headers.as_slice() else {
+        return Err(bad(format!("has {} parts, but a picture has one", meta.headers.len())));
+    };
+    check_channels(&header.channels).map_err(bad)?;
+    let (size, window) = windows(header).map_err(bad)?;
+    check_length(header, window, length).map_err(bad)?;
+    let metadata = facts(header);
+    let eye_samples = count(&metadata, SAMPLES).map_err(bad)?;
+    let light_samples = count(&metadata, LIGHT_PASSES).map_err(bad)?;
+    file.rewind().map_err(io)?;
+    let [eye, light] = pixels(file).map_err(|e| explain(path, e))?;
+    let [width, height] = size;
+    Ok((Picture { width, height, window, eye_samples, light_samples, eye, light }, metadata))
+}
+
+fn explain(path: &Path, error: exr::error::Error) -> FilmError {
+    use exr::error::Error;
+    match error {
+        Error::Io(e) => FilmError::io(path, e),
+        Error::Invalid(m) if m.contains("missing bytes") => FilmError::format(path, "the file is cut short"),
+        other => FilmError::format(path, format!("not an OpenEXR file that can be read ({other})")),
+    }
+}
+
+/// Whether all channels that are needed are there, at full resolution.
+fn check_channels(channels: &ChannelList) -> Result<(), String> {
+    for layer in LAYERS {
+        for channel in ["R", "G", "B"] {
+            let name = format!("{layer}.{channel}");
+            match channels.list.iter().find(|c| c.name.eq(&name)) {
+                None => return Err(format!("has no layer `{layer}`: the channel `{name}` is missing")),
+                Some(c) if c.sampling != Vec2(1, 1) => {
+                    return Err(format!("the channel `{name}` does not have every pixel"));
+                }
+                Some(_) => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The sides of the full picture, and the part of it that is there.
+fn windows(header: &Header) -> Result<([u32; 2], Window), String> {
+    let display = header.shared_attributes.display_window;
+    let offset = header.own_attributes.layer_position;
+    let part = || {
+        let size = [u32::try_from(display.size.0).ok()?, u32::try_from(display.size.1).ok()?];
+        let window = Window {
+            x: u32::try_from(i64::from(offset.0) - i64::from(display.position.0)).ok()?,
+            y: u32::try_from(i64::from(offset.1) - i64::from(display.position.1)).ok()?,
+            width: u32::try_from(header.layer_size.0).ok()?,
+            height: u32::try_from(header.layer_size.1).ok()?,
+        };
+        Some((size, window))
+    };
+    let (size, window) = part().ok_or("its data window leaves its display window")?;
+    check_window(size[0], size[1], window).map_err(|e| e.to_string())?;
+    Ok((size, window))
+}
+
+/// Refuses headers that announce more pixels than the file can hold, before memory is taken for them.
+fn check_length(header: &Header, window: Window, length: u64) -> Result<(), String> {
+    let announced = u128::from(window.pixels()) * header.channels.bytes_per_pixel as u128;
+    if announced > u128::from(length) * u128::from(CLOSEST_PACKING) {
+        let megabytes = announced / 1_000_000;
+        return Err(format!("announces {megabytes} MB of pixels, which {length} bytes cannot hold"));
+    }
+    Ok(())
+}
+
+/// Our attributes.
+fn facts(header: &Header) -> Metadata {
+    let mut metadata = Metadata::new();
+    let attributes = header.own_attributes.other.iter().chain(&header.shared_attributes.other);
+    for (name, value) in attributes {
+        if let (Some(name), AttributeValue::Text(value)) = (name.to_string().strip_prefix(PREFIX), value) {
+            metadata.set(name, String::from_utf8_lossy(value.as_slice()));
+        }
+    }
+    metadata
+}
+
+/// A number of samples; zero where a file says nothing.
+fn count(metadata: &Metadata, name: &str) -> Result<u64, String> {
+    match metadata.get(name) {
+        None => Ok(0),
+        Some(value) => value.parse().map_err(|_| format!("`{PREFIX}{name}` is no number: `{value}`")),
+    }
+}
+
+/// The eye and the light image.
+fn pixels(file: File) -> exr::error::Result<[Vec<Rgb>; 2]> {
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .specific_channels()
+        .required("eye.R")
+        .required("eye.G")
+        .required("eye.B")
+        .required("light.R")
+        .required("light.G")
+        .required("light.B")
+        .collect_pixels(
+            |size, _| (size.0, [vec![Rgb::BLACK; size.area()], vec![Rgb::BLACK; size.area()]]),
+            |(width, [eye, light]), Vec2(x, y), (r, g, b, lr, lg, lb): (f32, f32, f32, f32, f32, f32)| {
+                eye[y * *width + x] = Rgb::new(r, g, b);
+                light[y * *width + x] = Rgb::new(lr, lg, lb);
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_buffered(BufReader::new(file))?;
+    Ok(image.layer_data.channel_data.pixels.1)
+}

@@ -1,0 +1,53 @@
+//! Nori's XML scenes.
+//!
+//! A file is read in two steps: XML to objects with typed properties ([`tree`]), the same for all
+//! plugins; then each plugin reads its object through [`fields::Fields`], which keeps account of what
+//! nobody asked for.
+
+mod bsdf;
+mod camera;
+mod class;
+mod context;
+mod document;
+mod emitter;
+mod fields;
+mod integrator;
+mod range;
+mod scene;
+mod shape;
+mod test;
+mod texture;
+mod transform;
+mod tree;
+mod value;
+
+use std::path::Path;
+
+use caustica_scene::Diagnostic;
+
+use crate::Loaded;
+use crate::source::Source;
+use class::Class;
+use context::Warnings;
+use tree::Place;
+
+pub use test::{SceneTest, TestKind};
+
+/// Reads the scene and the tests of a file.
+pub(crate) fn read(source: &Source, base_dir: &Path) -> Result<Loaded, Diagnostic> {
+    let document = document::parse(source)?;
+    let place = Place { source };
+    let root = document.root_element();
+    let object = tree::object(place, root, 0)?;
+    let mut warnings = Warnings::default();
+    let (scene, tests) = match object.class {
+        Class::Scene => scene::read_file(&object, place, base_dir, &mut warnings)?,
+        Class::Test => (None, vec![test::read(&object, place, base_dir, &mut warnings)?]),
+        other => {
+            let message =
+                format!("a scene file must start with <scene> or <test>, not with <{}>", other.tag());
+            return Err(place.error(message, object.range));
+        }
+    };
+    Ok(Loaded { scene, tests, warnings: warnings.into_vec() })
+}

@@ -1,0 +1,218 @@
+use std::f32::consts::PI;
+
+use caustica_math::elementary::safe_sqrt;
+use caustica_math::{AreaPdf, Distribution1d, Frame, Spectrum, Vec2, Vec3, warp};
+
+use super::{Anchor, Emission, EmissionPdf, LightPoint, Surroundings};
+use crate::bvh::SphereData;
+use crate::description::Texture;
+use crate::surface::{FlatShape, SurfacePoint};
+
+/// A surface that emits from the side of its normal.
+#[derive(Debug)]
+pub struct AreaLight {
+    radiance: Texture,
+    surface: Surface,
+}
+
+#[derive(Debug)]
+enum Surface {
+    Mesh {
+        first_primitive: u32,
+        choice: Distribution1d,
+        /// Probability of each triangle over its area.
+        density: Vec<f32>,
+    },
+    Sphere {
+        primitive: u32,
+        data: SphereData,
+    },
+}
+
+/// The part of a lamp's sampling that goes by area alone, so that a texture's dark spots are still found.
+const UNIFORM_PART: f32 = 0.05;
+
+/// Where a triangle's emission is looked up to estimate its power: centroids of a 4 × 4 subdivision.
+const PROBES: u32 = 4;
+
+impl AreaLight {
+    /// From a shape of the scene; returns it with its power in W. `None` if it emits nothing.
+    pub fn new(shape: &FlatShape, radiance: Texture, around: &Surroundings<'_>) -> Option<(Self, f32)> {
+        let first = shape.first_primitive;
+        let luminance = |p: &SurfacePoint| around.textures.rgb(&radiance, p.uv).luminance();
+        if let Some(data) = around.surfaces.sphere(first) {
+            let mean = sphere_mean(first, around, &luminance);
+            let power = PI * 4.0 * PI * data.radius * data.radius * mean;
+            let surface = Surface::Sphere { primitive: first, data: *data };
+            return (power > 0.0).then_some((Self { radiance, surface }, power));
+        }
+        let triangles = first..first + shape.primitive_count;
+        let areas: Vec<f32> = triangles.clone().map(|t| area(around.surfaces.corners(t))).collect();
+        let means: Vec<f32> = triangles.map(|t| triangle_mean(t, around, &luminance)).collect();
+        let total_area: f32 = areas.iter().sum();
+        let power: f32 = areas.iter().zip(&means).map(|(a, m)| a * m).sum();
+        let floor = UNIFORM_PART * power / total_area;
+        let weights: Vec<f32> = areas.iter().zip(&means).map(|(a, m)| a * (m + floor)).collect();
+        let choice = Distribution1d::new(&weights)?;
+        let density =
+            areas.iter().enumerate().map(|(i, a)| if *a > 0.0 { choice.mass(i).0 / a } else { 0.0 }).collect();
+        let surface = Surface::Mesh { first_primitive: first, choice, density };
+        Some((Self { radiance, surface }, PI * power))
+    }
+
+    /// The radiance at texture coordinates `uv`.
+    #[inline]
+    pub fn radiance_at(&self, uv: Vec2, around: &Surroundings<'_>) -> Spectrum {
+        around.textures.spectrum(&self.radiance, uv, around.wavelengths)
+    }
+
+    /// The density of [`AreaLight::sample_point`] on that primitive.
+    #[inline]
+    pub fn area_pdf(&self, primitive: u32) -> AreaPdf {
+        match &self.surface {
+            Surface::Mesh { first_primitive, density, .. } => {
+                AreaPdf(density[(primitive - first_primitive) as usize])
+            }
+            Surface::Sphere { data, .. } => AreaPdf(1.0 / (4.0 * PI * data.radius * data.radius)),
+        }
+    }
+
+    /// A point by area and emission; `choice` picks the triangle.
+    fn sample_point(&self, choice: f32, u: [f32; 2], around: &Surroundings<'_>) -> SurfacePoint {
+        match &self.surface {
+            Surface::Mesh { first_primitive, choice: table, .. } => {
+                let [b1, b2] = warp::uniform_triangle(u);
+                let triangle = first_primitive + table.sample(choice).index as u32;
+                around.surfaces.triangle_point(triangle, b1, b2)
+            }
+            Surface::Sphere { primitive, .. } => {
+                around.surfaces.sphere_point(*primitive, warp::uniform_sphere(u))
+            }
+        }
+    }
+
+    pub(super) fn sample_emission(
+        &self,
+        light: u32,
+        choice: f32,
+        (u, v): ([f32; 2], [f32; 2]),
+        around: &Surroundings<'_>,
+    ) -> Option<Emission> {
+        let p = self.sample_point(choice, u, around);
+        let local = warp::cosine_hemisphere(v);
+        let direction = Frame::from_normal(p.normal).to_world(local);
+        let point = LightPoint::on_surface(light, &p);
+        let cos = p.normal.dot(direction);
+        let pdf = EmissionPdf {
+            point: self.area_pdf(p.primitive),
+            direction: warp::cosine_hemisphere_pdf(cos),
+        };
+        let origin = point.off_surface(direction);
+        (cos > 0.0).then(|| Emission {
+            point,
+            origin,
+            direction,
+            radiance: self.radiance_at(p.uv, around),
+            cos,
+            pdf,
+        })
+    }
+
+    pub(super) fn sample_towards(
+        &self,
+        light: u32,
+        from: Vec3,
+        (choice, u): (f32, [f32; 2]),
+        around: &Surroundings<'_>,
+    ) -> Option<(LightPoint, AreaPdf)> {
+        if let Surface::Sphere { primitive, data } = &self.surface
+            && let Some(cone) = Cone::new(data, from)
+        {
+            let p = around.surfaces.sphere_point(*primitive, cone.sample(u));
+            let point = LightPoint::on_surface(light, &p);
+            return cone.area_pdf(from, &point).map(|pdf| (point, pdf));
+        }
+        let p = self.sample_point(choice, u, around);
+        Some((LightPoint::on_surface(light, &p), self.area_pdf(p.primitive)))
+    }
+
+    pub(super) fn towards_pdf(&self, from: Vec3, point: &LightPoint, _: &Surroundings<'_>) -> AreaPdf {
+        if let Surface::Sphere { data, .. } = &self.surface
+            && let Some(cone) = Cone::new(data, from)
+        {
+            return cone.area_pdf(from, point).unwrap_or(AreaPdf::ZERO);
+        }
+        self.area_pdf(point.primitive)
+    }
+}
+
+/// A sphere as seen from outside: a cone of directions.
+struct Cone {
+    axis: Frame,
+    /// sin² of the half angle.
+    sin2: f32,
+    one_minus_cos: f32,
+}
+
+impl Cone {
+    /// `None` from inside, or so close that the cone is no better than the sphere's area.
+    fn new(sphere: &SphereData, from: Vec3) -> Option<Self> {
+        let to_center = sphere.center - from;
+        let sin2 = sphere.radius * sphere.radius / to_center.length_squared();
+        if sin2 > 0.9999 {
+            return None;
+        }
+        let one_minus_cos = sin2 / (1.0 + safe_sqrt(1.0 - sin2));
+        Some(Self { axis: Frame::from_normal(to_center.normalized()), sin2, one_minus_cos })
+    }
+
+    /// The normal of a visible point, uniform in solid angle (Pharr, Jakob and Humphreys, "Physically Based
+    /// Rendering", 4th ed., 6.2.4).
+    fn sample(&self, u: [f32; 2]) -> Vec3 {
+        let d = warp::uniform_cone(u, self.one_minus_cos);
+        let sin2_theta = d.x * d.x + d.y * d.y;
+        // Angle at the sphere's centre between the axis and the point.
+        let ratio = (sin2_theta / self.sin2).min(1.0);
+        let cos_alpha = sin2_theta / self.sin2.sqrt() + d.z * safe_sqrt(1.0 - ratio);
+        let sin_alpha = safe_sqrt(1.0 - cos_alpha * cos_alpha);
+        let k = if sin2_theta > 0.0 { sin_alpha / sin2_theta.sqrt() } else { 0.0 };
+        self.axis.to_world(Vec3::new(d.x * k, d.y * k, -cos_alpha)).normalized()
+    }
+
+    /// The density at a point of the near side, per area.
+    fn area_pdf(&self, from: Vec3, point: &LightPoint) -> Option<AreaPdf> {
+        debug_assert!(point.anchor == Anchor::Surface);
+        let (direction, distance) = point.direction_from(from);
+        let cos = -point.normal.dot(direction);
+        (cos > 0.0).then(|| AreaPdf(warp::uniform_cone_pdf(self.one_minus_cos).0 * cos / (distance * distance)))
+    }
+}
+
+fn area([a, b, c]: [Vec3; 3]) -> f32 {
+    0.5 * (b - a).cross(c - a).length()
+}
+
+fn triangle_mean(triangle: u32, around: &Surroundings<'_>, luminance: &dyn Fn(&SurfacePoint) -> f32) -> f32 {
+    let n = PROBES;
+    let mut sum = 0.0;
+    for i in 0..n {
+        for j in 0..n {
+            let u = [(i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32];
+            let [b1, b2] = warp::uniform_triangle(u);
+            sum += luminance(&around.surfaces.triangle_point(triangle, b1, b2));
+        }
+    }
+    sum / (n * n) as f32
+}
+
+fn sphere_mean(primitive: u32, around: &Surroundings<'_>, luminance: &dyn Fn(&SurfacePoint) -> f32) -> f32 {
+    let n = 16;
+    let mut sum = 0.0;
+    for i in 0..n {
+        for j in 0..n {
+            let normal = warp::uniform_sphere([(i as f32 + 0.5) / n as f32, (j as f32 + 0.5) / n as f32]);
+            sum += luminance(&around.surfaces.sphere_point(primitive, normal));
+        }
+    }
+    sum / (n * n) as f32
+}

@@ -1,0 +1,152 @@
+use std::f32::consts::{FRAC_1_PI, PI, TAU};
+
+use caustica_math::elementary::{acos, atan2, sin, sin_cos, sin_cos_turns};
+use caustica_math::{Distribution2d, Rgb, SolidAnglePdf, Spectrum, Vec3, warp};
+
+use super::Surroundings;
+use crate::description::Image;
+use crate::texture::{Wrap, bilinear};
+
+/// Light from everywhere: constant, or an equirectangular map.
+#[derive(Debug)]
+pub enum EnvironmentLight {
+    /// The same radiance from all directions.
+    Constant(Spectrum),
+    /// A map.
+    Map(Box<EnvironmentMap>),
+}
+
+/// An equirectangular map with its sampling table.
+#[derive(Debug)]
+pub struct EnvironmentMap {
+    image: u32,
+    scale: f32,
+    /// Map axes in world space.
+    axes: [Vec3; 3],
+    table: Distribution2d,
+    /// ∫ luminance dω.
+    flux: f32,
+}
+
+/// Direction in the map's frame to the unit square, from the upper left corner.
+fn direction_to_square(d: Vec3) -> [f32; 2] {
+    let x = 0.5 - atan2(d.x, d.z) * (0.5 * FRAC_1_PI);
+    [if x >= 1.0 { 0.0 } else { x }, acos(d.y) * FRAC_1_PI]
+}
+
+/// The inverse, and sin θ.
+fn square_to_direction([x, y]: [f32; 2]) -> (Vec3, f32) {
+    let (sin_theta, cos_theta) = sin_cos(y * PI);
+    // The angle from +z towards +x is half a turn less x turns.
+    let (s, c) = sin_cos_turns(x);
+    (Vec3::new(sin_theta * s, cos_theta, -sin_theta * c), sin_theta)
+}
+
+impl EnvironmentMap {
+    /// Builds the sampling table. `None` if the image is black.
+    ///
+    /// Cells are weighed by the mean of their 3 × 3 neighbours, because a bilinear look-up reaches into
+    /// those: wherever there is radiance there is density.
+    pub fn new(index: u32, image: &Image, scale: f32, axes: [Vec3; 3]) -> Option<Self> {
+        let (w, h) = (image.width as usize, image.height as usize);
+        let luminance = |row: usize, column: usize| image.pixels[row * w + column].luminance();
+        let mut weights = Vec::with_capacity(w * h);
+        let mut flux = 0.0_f64;
+        for row in 0..h {
+            let sin_theta = sin((row as f32 + 0.5) / h as f32 * PI);
+            let rows = [row.saturating_sub(1), row, (row + 1).min(h - 1)];
+            for column in 0..w {
+                let columns = [(column + w - 1) % w, column, (column + 1) % w];
+                let sum: f32 = rows.iter().flat_map(|r| columns.iter().map(|c| luminance(*r, *c))).sum();
+                weights.push(sum / 9.0 * sin_theta);
+                flux += f64::from(luminance(row, column) * sin_theta);
+            }
+        }
+        let cell = TAU * PI / (w * h) as f32;
+        let flux = (flux * f64::from(cell)) as f32 * scale;
+        Some(Self { image: index, scale, axes, table: Distribution2d::new(&weights, w)?, flux })
+    }
+}
+
+impl EnvironmentLight {
+    /// ∫ luminance dω.
+    pub fn flux(&self, around: &Surroundings<'_>) -> f32 {
+        match self {
+            Self::Constant(radiance) => around.wavelengths.luminance(*radiance) * 2.0 * TAU,
+            Self::Map(map) => map.flux,
+        }
+    }
+
+    /// A direction towards the environment and its density.
+    pub fn sample_direction(&self, u: [f32; 2]) -> Option<(Vec3, SolidAnglePdf)> {
+        match self {
+            Self::Constant(_) => Some((warp::uniform_sphere(u), warp::UNIFORM_SPHERE_PDF)),
+            Self::Map(map) => {
+                let (point, _) = map.table.sample(u);
+                let (d, _) = square_to_direction(point);
+                let towards = map.axes[0] * d.x + map.axes[1] * d.y + map.axes[2] * d.z;
+                // Asked again by direction, so that rounding cannot tell the two apart.
+                let pdf = self.direction_pdf(towards);
+                (pdf.0 > 0.0).then_some((towards, pdf))
+            }
+        }
+    }
+
+    /// The density of a direction towards the environment.
+    pub fn direction_pdf(&self, towards: Vec3) -> SolidAnglePdf {
+        match self {
+            Self::Constant(_) => warp::UNIFORM_SPHERE_PDF,
+            Self::Map(map) => {
+                let local = map.local(towards);
+                let sin_theta = caustica_math::elementary::safe_sqrt(1.0 - local.y * local.y);
+                if sin_theta <= 0.0 {
+                    return SolidAnglePdf::ZERO;
+                }
+                SolidAnglePdf(map.table.pdf(direction_to_square(local)) / (TAU * PI * sin_theta))
+            }
+        }
+    }
+
+    /// The radiance that arrives from a direction.
+    pub fn radiance_from(&self, towards: Vec3, around: &Surroundings<'_>) -> Spectrum {
+        match self {
+            Self::Constant(radiance) => *radiance,
+            Self::Map(map) => {
+                let [x, y] = direction_to_square(map.local(towards));
+                let image = &around.textures.images[map.image as usize];
+                let rgb: Rgb = bilinear(image, x, y, Wrap::Clamp) * map.scale;
+                around.wavelengths.spectrum(rgb)
+            }
+        }
+    }
+}
+
+impl EnvironmentMap {
+    fn local(&self, d: Vec3) -> Vec3 {
+        Vec3::new(d.dot(self.axes[0]), d.dot(self.axes[1]), d.dot(self.axes[2]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn square_and_sphere_round_trip() {
+        for i in 0..50 {
+            for j in 1..50 {
+                let p = [(i as f32 + 0.5) / 50.0, j as f32 / 50.0];
+                let q = direction_to_square(square_to_direction(p).0);
+                assert!((p[0] - q[0]).abs() < 1e-5 && (p[1] - q[1]).abs() < 1e-5, "{p:?} {q:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_centre_is_plus_z_and_left_is_plus_x() {
+        let d = |x, y| square_to_direction([x, y]).0;
+        assert!((d(0.5, 0.5) - Vec3::Z).length() < 1e-5);
+        assert!((d(0.25, 0.5) - Vec3::X).length() < 1e-5);
+        assert!((d(0.5, 0.0) - Vec3::Y).length() < 1e-5);
+    }
+}

@@ -1,0 +1,36 @@
+//! Materials of the flat scene: BSDFs whose textures are still to be looked up.
+
+use caustica_math::{Vec2, Wavelengths};
+
+use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric};
+use crate::description::MaterialKind;
+use crate::texture::TextureTable;
+
+/// The material's BSDF at texture coordinates `uv`.
+#[inline]
+pub fn bsdf_at(kind: &MaterialKind, textures: &TextureTable<'_>, uv: Vec2, w: Wavelengths) -> Bsdf {
+    let metal = |eta, k, reflectance| Conductor {
+        eta: w.spectrum(eta),
+        k: w.spectrum(k),
+        reflectance: w.spectrum(reflectance),
+    };
+    match *kind {
+        MaterialKind::Diffuse { ref albedo } => {
+            Bsdf::Diffuse(Diffuse { albedo: textures.spectrum(albedo, uv, w) })
+        }
+        MaterialKind::Mirror { reflectance } => Bsdf::Mirror { reflectance: w.spectrum(reflectance) },
+        MaterialKind::Dielectric { interior_ior, exterior_ior } => {
+            Bsdf::Dielectric(Dielectric { interior_ior, exterior_ior })
+        }
+        MaterialKind::RoughDielectric { alpha, interior_ior, exterior_ior } => {
+            Bsdf::RoughDielectric(RoughDielectric::new(alpha, interior_ior, exterior_ior))
+        }
+        MaterialKind::Conductor { eta, k, reflectance } => Bsdf::Conductor(metal(eta, k, reflectance)),
+        MaterialKind::RoughConductor { alpha, eta, k, reflectance } => {
+            Bsdf::RoughConductor(RoughConductor::new(metal(eta, k, reflectance), alpha))
+        }
+        MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, ref kd } => {
+            Bsdf::Microfacet(Microfacet::new(textures.spectrum(kd, uv, w), alpha, interior_ior, exterior_ior))
+        }
+    }
+}

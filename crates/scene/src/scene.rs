@@ -1,0 +1,305 @@
+//! The flat scene: what rays run on.
+
+use caustica_math::{Frame, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
+
+use crate::bsdf::Bsdf;
+use crate::bvh::{Bvh, Hit, Ray};
+use crate::camera::Camera;
+use crate::description::{Description, FilmSettings, Image, LightKind, MaterialKind};
+use crate::diagnostic::Diagnostic;
+use crate::light::{
+    AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
+    SpotLight, Surroundings, power_through_disk,
+};
+
+use crate::material::bsdf_at;
+use crate::surface::{SurfacePoint, Surfaces};
+use crate::texture::TextureTable;
+
+/// A scene ready to be rendered. Immutable, and shared between threads.
+#[derive(Debug)]
+pub struct Scene {
+    /// The eye.
+    pub camera: Camera,
+    /// The picture's size, crop and filter.
+    pub film: FilmSettings,
+    surfaces: Surfaces,
+    bvh: Bvh,
+    materials: Vec<MaterialKind>,
+    images: Vec<Image>,
+    lights: Lights,
+    center: Vec3,
+    radius: f32,
+}
+
+impl Scene {
+    /// Flattens a description; returns the scene and warnings.
+    ///
+    /// # Errors
+    /// Geometry, camera, materials or lights that cannot be rendered: see [`Surfaces::new`] and
+    /// [`Camera::new`].
+    pub fn new(mut description: Description) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
+        let mut warnings = Vec::new();
+        let film = description.film.clone();
+        let camera = Camera::new(&description.camera, &film)?;
+        check_references(&description)?;
+        let surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
+        let bvh = Bvh::new(surfaces.positions(), surfaces.triangles(), &surfaces.spheres());
+        let bounds = bvh.bounds();
+        let (center, radius) = if bounds.is_empty() {
+            (camera.position(), 1.0)
+        } else {
+            (bounds.center(), ((bounds.max - bounds.center()).length() * 1.0001).max(f32::MIN_POSITIVE))
+        };
+        let materials = description.materials.iter().map(|m| m.kind).collect();
+        let images = std::mem::take(&mut description.images);
+        let mut scene = Self {
+            camera,
+            film,
+            surfaces,
+            bvh,
+            materials,
+            images,
+            lights: Lights::new(Vec::new(), &[]),
+            center,
+            radius,
+        };
+        scene.lights = scene.flatten_lights(&description, &mut warnings)?;
+        crate::warnings::check(&scene, &description, &mut warnings);
+        Ok((scene, warnings))
+    }
+
+    fn flatten_lights(
+        &mut self,
+        description: &Description,
+        warnings: &mut Vec<Diagnostic>,
+    ) -> Result<Lights, Diagnostic> {
+        let w = Wavelengths::Rgb;
+        let (mut lights, mut powers) = (Vec::new(), Vec::new());
+        for (index, shape) in description.shapes.iter().enumerate() {
+            let Some(radiance) = shape.emission else { continue };
+            let flat = self.surfaces.shapes[index];
+            match AreaLight::new(&flat, radiance, &self.surroundings(w)) {
+                Some((light, power)) => {
+                    self.surfaces.shapes[index].light = Some(lights.len() as u32);
+                    lights.push(Light::Area(light));
+                    powers.push(power);
+                }
+                None => warnings.push(
+                    Diagnostic::warning(format!("{} is a lamp that emits nothing", shape.name))
+                        .at(shape.origin.clone()),
+                ),
+            }
+        }
+        for light in &description.lights {
+            let made = self.flatten_light(&light.kind, w);
+            match made.map_err(|m| Diagnostic::error(m).at(light.origin.clone()))? {
+                Some((flat, power)) if power > 0.0 && power.is_finite() => {
+                    lights.push(flat);
+                    powers.push(power);
+                }
+                _ => warnings.push(
+                    Diagnostic::warning("this lamp emits nothing").at(light.origin.clone()),
+                ),
+            }
+        }
+        Ok(Lights::new(lights, &powers))
+    }
+
+    /// The lamp and its power.
+    fn flatten_light(&self, kind: &LightKind, w: Wavelengths) -> Result<Option<(Light, f32)>, &'static str> {
+        let around = self.surroundings(w);
+        let unit = |d: [f32; 3]| {
+            Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero")
+        };
+        let full = 4.0 * std::f32::consts::PI;
+        Ok(Some(match *kind {
+            LightKind::Point { position, intensity } => {
+                let intensity = w.spectrum(intensity);
+                (Light::Point { position: position.into(), intensity }, full * w.luminance(intensity))
+            }
+            LightKind::Spot { position, direction, intensity, inner_angle, outer_angle } => {
+                if !(0.0 <= inner_angle && inner_angle <= outer_angle && outer_angle <= 180.0 && outer_angle > 0.0) {
+                    return Err("a spot's angles must satisfy 0 ≤ inner ≤ outer ≤ 180 degrees");
+                }
+                let intensity = w.spectrum(intensity);
+                let spot =
+                    SpotLight::new(position.into(), unit(direction)?, intensity, inner_angle, outer_angle);
+                (Light::Spot(spot), spot.solid_angle() * w.luminance(intensity))
+            }
+            LightKind::Directional { direction, irradiance } => {
+                let irradiance = w.spectrum(irradiance);
+                let power = power_through_disk(w.luminance(irradiance), self.radius);
+                (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
+            }
+            LightKind::Constant { radiance } => {
+                let light = EnvironmentLight::Constant(w.spectrum(radiance));
+                let power = power_through_disk(light.flux(&around), self.radius);
+                (Light::Environment(light), power)
+            }
+            LightKind::Environment { image, to_world, scale } => {
+                let axis = |a| to_world.vector(a).try_normalized();
+                let (Some(x), Some(y), Some(z)) = (axis(Vec3::X), axis(Vec3::Y), axis(Vec3::Z)) else {
+                    return Err("the environment's transform cannot be inverted");
+                };
+                let pixels = &self.images[image.0 as usize];
+                let Some(map) = EnvironmentMap::new(image.0, pixels, scale, [x, y, z]) else {
+                    return Ok(None);
+                };
+                let light = EnvironmentLight::Map(Box::new(map));
+                let power = power_through_disk(light.flux(&around), self.radius);
+                (Light::Environment(light), power)
+            }
+        }))
+    }
+
+    fn surroundings(&self, wavelengths: Wavelengths) -> Surroundings<'_> {
+        Surroundings {
+            surfaces: &self.surfaces,
+            textures: TextureTable { images: &self.images },
+            center: self.center,
+            radius: self.radius,
+            wavelengths,
+        }
+    }
+
+    /// Samples and densities of the lamps.
+    #[inline]
+    pub fn lights(&self, wavelengths: Wavelengths) -> LightQuery<'_> {
+        LightQuery { lights: &self.lights, around: self.surroundings(wavelengths) }
+    }
+
+    /// The first surface along a ray.
+    #[inline]
+    pub fn closest(&self, ray: &Ray) -> Option<SurfacePoint> {
+        let hit: Hit = self.bvh.closest(ray)?;
+        Some(self.surfaces.point(&hit, ray.origin, ray.direction))
+    }
+
+    /// Whether anything is hit along the ray.
+    #[inline]
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        self.bvh.occluded(ray)
+    }
+
+    /// Whether nothing stands between two points, both already moved off their surfaces.
+    #[inline]
+    pub fn visible(&self, from: Vec3, to: Vec3) -> bool {
+        !self.bvh.occluded(&Ray { origin: from, direction: to - from, t_max: 1.0 })
+    }
+
+    /// The BSDF at a point.
+    #[inline]
+    pub fn bsdf(&self, point: &SurfacePoint, wavelengths: Wavelengths) -> Bsdf {
+        let material = self.surfaces.shapes[point.shape as usize].material;
+        let textures = TextureTable { images: &self.images };
+        bsdf_at(&self.materials[material as usize], &textures, point.uv, wavelengths)
+    }
+
+    /// The point as part of a lamp, if its shape is one.
+    #[inline]
+    pub fn lamp_at(&self, point: &SurfacePoint) -> Option<LightPoint> {
+        let light = self.surfaces.shapes[point.shape as usize].light?;
+        Some(LightPoint::on_surface(light, point))
+    }
+
+    /// The radiance that a surface emits in a direction; black if it is no lamp.
+    pub fn emitted(&self, point: &SurfacePoint, direction: Vec3, w: Wavelengths) -> Spectrum {
+        self.lamp_at(point).map_or(Spectrum::ZERO, |p| self.lights(w).radiance(&p, direction))
+    }
+
+    /// Whether no ray that leaves the front of the shape meets the front of a surface, or a transparent one:
+    /// looked at from a few dozen places.
+    pub(crate) fn faces_nothing(&self, shape: usize) -> bool {
+        let flat = self.surfaces.shapes[shape];
+        if self.surfaces.sphere(flat.first_primitive).is_some() {
+            return false;
+        }
+        let probes = 64;
+        let mut stream = SampleStream::new(StreamId { seed: 0, pixel: shape as u32, sample: 0, walk: 0 });
+        (0..probes).all(|i| {
+            let triangle = flat.first_primitive + (i * flat.primitive_count / probes).min(flat.primitive_count - 1);
+            let [b1, b2] = warp::uniform_triangle(stream.next_2d());
+            let p = self.surfaces.triangle_point(triangle, b1, b2);
+            let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(stream.next_2d()));
+            let ray = Ray { origin: p.off_surface(d), direction: d, t_max: f32::INFINITY };
+            self.closest(&ray).is_none_or(|q| {
+                q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits()
+            })
+        })
+    }
+
+    /// The surface tables.
+    pub fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
+    }
+
+    /// The tree.
+    pub fn bvh(&self) -> &Bvh {
+        &self.bvh
+    }
+
+    /// The images.
+    pub fn images(&self) -> &[Image] {
+        &self.images
+    }
+
+    /// The lamps.
+    pub fn lamps(&self) -> &Lights {
+        &self.lights
+    }
+
+    /// Centre and radius of a sphere around all surfaces.
+    pub fn bounding_sphere(&self) -> (Vec3, f32) {
+        (self.center, self.radius)
+    }
+}
+
+/// Every id must name something.
+fn check_references(d: &Description) -> Result<(), Diagnostic> {
+    use crate::description::Texture;
+    let image_exists = |t: &Texture| match t {
+        Texture::Image { image, .. } => (image.0 as usize) < d.images.len(),
+        _ => true,
+    };
+    for image in &d.images {
+        if image.width == 0 || image.pixels.len() != image.width as usize * image.height as usize {
+            return Err(Diagnostic::error("an image's pixels do not match its size"));
+        }
+    }
+    for m in &d.materials {
+        let (MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. }) = &m.kind else {
+            continue;
+        };
+        if !image_exists(t) {
+            return Err(Diagnostic::error("a material's texture names an image that does not exist")
+                .at(m.origin.clone()));
+        }
+    }
+    for s in &d.shapes {
+        if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t)) {
+            return Err(Diagnostic::error(format!(
+                "{} names a material or an image that does not exist",
+                s.name
+            ))
+            .at(s.origin.clone()));
+        }
+    }
+    for l in &d.lights {
+        if let LightKind::Environment { image, .. } = l.kind
+            && image.0 as usize >= d.images.len()
+        {
+            return Err(Diagnostic::error("an environment names an image that does not exist")
+                .at(l.origin.clone()));
+        }
+    }
+    let w = d.film.window();
+    let inside = |start: u32, size: u32, full: u32| size > 0 && start.checked_add(size).is_some_and(|e| e <= full);
+    if !inside(w.x, w.width, d.film.width) || !inside(w.y, w.height, d.film.height) {
+        return Err(Diagnostic::error(format!(
+            "the crop window {}×{} at ({}, {}) does not lie within the picture of {}×{} pixels",
+            w.width, w.height, w.x, w.y, d.film.width, d.film.height
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,205 @@
+//! The kernel: a scene with the settings that it is rendered by.
+
+use caustica_math::filter::PixelFilter;
+use caustica_math::{SampleStream, Spectrum, StreamId, Vec2, Wavelengths};
+use caustica_scene::Scene;
+use caustica_scene::bvh::Ray;
+use caustica_scene::camera::CameraRay;
+use caustica_scene::description::Integrator;
+
+use crate::sink::Sink;
+use crate::strategy::{Classes, StrategySet};
+use crate::walk::{Flight, Subpath};
+use crate::weight::{Heuristic, VertexDensities};
+
+/// How a scene is rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The algorithm.
+    pub integrator: Integrator,
+    /// The most edges that a path may have: 1 is lamps seen directly, 2 adds direct light. `None`: no limit.
+    pub max_depth: Option<u32>,
+    /// After how many bounces roulette begins.
+    pub roulette_start: u32,
+    /// The seed of all sample streams.
+    pub seed: u64,
+    /// The strategies that `bdpt` uses.
+    pub strategies: StrategySet,
+    /// How `bdpt` weighs them.
+    pub heuristic: Heuristic,
+    /// Whether `bdpt` adds up all strategies for every weight, instead of running sums: slower, the same up to
+    /// rounding. Sets that are no union of classes need it and get it anyway.
+    pub exhaustive_weights: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            integrator: Integrator::Bdpt,
+            max_depth: None,
+            roulette_start: 3,
+            seed: 0,
+            strategies: StrategySet::default(),
+            heuristic: Heuristic::Balance,
+            exhaustive_weights: false,
+        }
+    }
+}
+
+/// Longer paths than this are cut even without a limit, so that a scene of perfect mirrors ends. Roulette
+/// alone makes them rarer than one in 10⁴ of those that no surface absorbs.
+const LONGEST_PATH: u32 = 1024;
+
+/// Walks of a sample, which name its streams.
+pub(crate) mod streams {
+    pub const EYE: u32 = 0;
+    pub const LIGHT: u32 = 1;
+    pub const JOIN: u32 = 2;
+}
+
+/// Renders samples of one scene. Shared between threads; all that changes is in [`Scratch`] and the sink.
+#[derive(Debug)]
+pub struct Kernel<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) settings: Settings,
+    pub(crate) filter: PixelFilter,
+    /// Which classes the running sums count.
+    pub(crate) classes: Classes,
+    pub(crate) exhaustive: bool,
+    pub(crate) heuristic: Heuristic,
+    pub(crate) max_edges: usize,
+    pub(crate) roulette_start: usize,
+    /// Light paths in one pass: as many as the window has pixels.
+    pub(crate) light_paths: f32,
+    pub(crate) wavelengths: Wavelengths,
+}
+
+/// Buffers that are used again for every sample of a thread.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    pub(crate) eye: Subpath,
+    pub(crate) light: Subpath,
+    pub(crate) densities: Vec<VertexDensities>,
+}
+
+/// One eye path's beginning.
+pub(crate) struct EyeSample {
+    pub film: Vec2,
+    /// The filter's sign and size, by which the sample counts.
+    pub filter_weight: f32,
+    pub ray: CameraRay,
+    pub stream: SampleStream,
+}
+
+impl<'a> Kernel<'a> {
+    /// A kernel for that scene.
+    pub fn new(scene: &'a Scene, settings: Settings) -> Self {
+        let all = Classes { hit: true, next_event: true, splat: true, inner: true };
+        let window = scene.film.window();
+        Self {
+            scene,
+            filter: PixelFilter::new(&scene.film.filter),
+            classes: settings.strategies.classes().unwrap_or(all),
+            exhaustive: settings.exhaustive_weights || settings.strategies.classes().is_none(),
+            heuristic: settings.heuristic,
+            max_edges: settings.max_depth.unwrap_or(LONGEST_PATH).clamp(1, LONGEST_PATH) as usize,
+            roulette_start: settings.roulette_start as usize,
+            light_paths: window.width as f32 * window.height as f32,
+            wavelengths: Wavelengths::Rgb,
+            settings,
+        }
+    }
+
+    /// The pixel filter, for splatting what the sink gets.
+    pub fn filter(&self) -> &PixelFilter {
+        &self.filter
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        self.scene
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Whether the integrator splats into the light image.
+    pub fn has_light_image(&self) -> bool {
+        match self.settings.integrator {
+            Integrator::Light => true,
+            Integrator::Bdpt => self.classes.splat,
+            _ => false,
+        }
+    }
+
+    /// Renders one sample: one eye path through `pixel` (of the full picture) and, where the integrator has
+    /// them, one light path. Calls [`Sink::eye`] once, unless the integrator has no eye paths.
+    pub fn sample<S: Sink>(&self, pixel: [u32; 2], sample: u32, scratch: &mut Scratch, sink: &mut S) {
+        let id = StreamId {
+            seed: self.settings.seed,
+            pixel: pixel[1].wrapping_mul(self.scene.film.width).wrapping_add(pixel[0]),
+            sample,
+            walk: streams::EYE,
+        };
+        match self.settings.integrator {
+            Integrator::Bdpt => self.bdpt(pixel, id, scratch, sink),
+            Integrator::Light => self.trace_light(id, sink),
+            Integrator::Path(technique) => self.path(pixel, id, technique, sink),
+            Integrator::Direct(technique) => self.direct(pixel, id, technique, sink),
+            Integrator::Whitted => self.whitted(pixel, id, sink),
+            _ => self.direct_view(pixel, id, sink),
+        }
+    }
+
+    /// Draws the film position, by the pixel filter, and the camera ray.
+    pub(crate) fn eye_sample(&self, pixel: [u32; 2], id: StreamId) -> EyeSample {
+        let mut stream = SampleStream::new(id);
+        let (offset, filter_weight) = self.filter.sample(stream.next_2d());
+        let film = Vec2::new(pixel[0] as f32 + 0.5 + offset.x, pixel[1] as f32 + 0.5 + offset.y);
+        let ray = self.scene.camera.ray(film, stream.next_2d());
+        EyeSample { film, filter_weight, ray, stream }
+    }
+
+    /// The first flight of a camera walk.
+    pub(crate) fn camera_flight(ray: &CameraRay) -> Flight {
+        Flight {
+            ray: Ray { origin: ray.origin, direction: ray.direction, t_max: ray.t_max },
+            throughput: Spectrum::ONE,
+            pdf: ray.pdf.0,
+            from: (!ray.point.infinite).then_some(ray.point.at),
+            cos: 1.0,
+            reverse: 0.0,
+            delta: false,
+            radiance_scale: 1.0,
+        }
+    }
+
+    /// Whether a film position is near enough to the window for its pixels to see it.
+    #[inline]
+    pub(crate) fn reaches_window(&self, film: Vec2) -> bool {
+        let (w, r) = (self.scene.film.window(), self.filter.radius());
+        film.x >= w.x as f32 - r
+            && film.y >= w.y as f32 - r
+            && film.x <= (w.x + w.width) as f32 + r
+            && film.y <= (w.y + w.height) as f32 + r
+    }
+
+    /// Splats at every film position that shows the same place.
+    #[inline]
+    pub(crate) fn splat<S: Sink>(&self, film: Vec2, value: Spectrum, sink: &mut S) {
+        let rgb = self.wavelengths.rgb(value);
+        for alias in self.scene.camera.aliases(film, self.filter.radius()) {
+            if self.reaches_window(alias) {
+                sink.splat(alias, rgb);
+            }
+        }
+    }
+
+    /// Whether any alias of a film position is near enough to the window.
+    #[inline]
+    pub(crate) fn is_seen(&self, film: Vec2) -> bool {
+        self.scene.camera.aliases(film, self.filter.radius()).any(|a| self.reaches_window(a))
+    }
+}

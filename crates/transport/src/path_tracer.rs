@@ -1,0 +1,152 @@
+//! Unidirectional path tracing in its three techniques, direct light, and Whitted's chains. Written apart from
+//! the bidirectional integrator, so that the two check each other.
+
+use caustica_math::{SampleStream, Spectrum, StreamId};
+use caustica_scene::bsdf::Walk;
+use caustica_scene::bvh::Ray;
+use caustica_scene::description::Technique;
+use caustica_scene::light::LightPoint;
+
+use crate::edge::Edge;
+use crate::kernel::{EyeSample, Kernel};
+use crate::sink::Sink;
+use crate::vertex::Vertex;
+
+/// How the eye path came to where it is, for weighing what it hits.
+enum Arrival {
+    /// From the camera, or by a Dirac lobe: next-event estimation could not have made this path.
+    Sure,
+    /// From a vertex, by a direction of that solid-angle density.
+    Sampled { from: Vertex, pdf: f32 },
+}
+
+/// What a path does after its first surface without Dirac lobes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Chain {
+    /// Goes on scattering.
+    Scatters,
+    /// Ends there, after collecting direct light (Whitted).
+    Ends,
+}
+
+impl Kernel<'_> {
+    pub(crate) fn path<S: Sink>(&self, pixel: [u32; 2], id: StreamId, technique: Technique, sink: &mut S) {
+        self.trace_eye(pixel, id, (technique, self.max_edges, Chain::Scatters), sink);
+    }
+
+    pub(crate) fn direct<S: Sink>(&self, pixel: [u32; 2], id: StreamId, technique: Technique, sink: &mut S) {
+        self.trace_eye(pixel, id, (technique, self.max_edges.min(2), Chain::Scatters), sink);
+    }
+
+    pub(crate) fn whitted<S: Sink>(&self, pixel: [u32; 2], id: StreamId, sink: &mut S) {
+        self.trace_eye(pixel, id, (Technique::Emitters, self.max_edges, Chain::Ends), sink);
+    }
+
+    fn trace_eye<S: Sink>(
+        &self,
+        pixel: [u32; 2],
+        id: StreamId,
+        (technique, max_edges, chain): (Technique, usize, Chain),
+        sink: &mut S,
+    ) {
+        let EyeSample { filter_weight, ray, mut stream, .. } = self.eye_sample(pixel, id);
+        let mut ray = Ray { origin: ray.origin, direction: ray.direction, t_max: ray.t_max };
+        let (mut throughput, mut radiance_scale) = (Spectrum::ONE, 1.0);
+        let mut sum = Spectrum::ZERO;
+        let mut arrival = Arrival::Sure;
+        for edges in 1..=max_edges {
+            let Some(point) = self.scene.closest(&ray) else {
+                sum += throughput * self.environment(&ray, &arrival, technique);
+                break;
+            };
+            let Some(vertex) = Vertex::new(self.scene, point, -ray.direction, self.wavelengths) else {
+                break;
+            };
+            if let Some(lamp) = self.scene.lamp_at(&point) {
+                sum += throughput * self.lamp(&lamp, &ray, (&arrival, technique));
+            }
+            if edges == max_edges {
+                break;
+            }
+            if technique != Technique::Materials && vertex.is_connectible() {
+                sum += throughput * self.direct_light(&vertex, technique, &mut stream);
+            }
+            if chain == Chain::Ends && vertex.is_connectible() {
+                break;
+            }
+            let [u0, u1] = stream.next_2d();
+            let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, [u0, u1, stream.next_1d()])
+            else {
+                break;
+            };
+            throughput *= s.value * (1.0 / s.forward.0);
+            radiance_scale *= vertex.radiance_scale(direction);
+            arrival = if delta { Arrival::Sure } else { Arrival::Sampled { from: vertex, pdf: s.forward.0 } };
+            if edges >= self.roulette_start {
+                // Nori's rule: the throughput without the radiance scale of refraction, at most 0.99.
+                let survival = (throughput.max_lane() / radiance_scale).min(0.99);
+                if stream.next_1d() >= survival {
+                    break;
+                }
+                throughput *= 1.0 / survival;
+            }
+            ray = Ray { origin: vertex.point.off_surface(direction), direction, t_max: f32::INFINITY };
+        }
+        sink.eye(self.wavelengths.rgb(sum * filter_weight));
+    }
+
+    /// The weighted radiance of a lamp that the ray hit.
+    fn lamp(&self, lamp: &LightPoint, ray: &Ray, how: (&Arrival, Technique)) -> Spectrum {
+        let radiance = self.scene.lights(self.wavelengths).radiance(lamp, -ray.direction);
+        if radiance.is_black() { radiance } else { radiance * self.hit_weight(lamp, how) }
+    }
+
+    /// The weighted radiance of all environments behind the ray.
+    fn environment(&self, ray: &Ray, arrival: &Arrival, technique: Technique) -> Spectrum {
+        let lights = self.scene.lights(self.wavelengths);
+        let mut sum = Spectrum::ZERO;
+        for index in lights.lights.environments() {
+            let lamp = LightPoint::infinite(*index, ray.direction);
+            let weight = self.hit_weight(&lamp, (arrival, technique));
+            sum += lights.radiance(&lamp, -ray.direction) * weight;
+        }
+        sum
+    }
+
+    /// The weight of hitting a lamp against finding it by next-event estimation.
+    fn hit_weight(&self, lamp: &LightPoint, (arrival, technique): (&Arrival, Technique)) -> f32 {
+        let Arrival::Sampled { from, pdf } = arrival else { return 1.0 };
+        match technique {
+            Technique::Materials => 1.0,
+            Technique::Emitters => 0.0,
+            Technique::Mis => {
+                let position = from.point.position;
+                let (direction, distance) = lamp.direction_from(position);
+                let hit = pdf * Edge::of_length(distance).jacobian(lamp.cos(direction));
+                let found = self.scene.lights(self.wavelengths).towards_pdf(position, lamp);
+                let (hit, found) = (self.heuristic.of(hit), self.heuristic.of(found.0));
+                hit / (hit + found)
+            }
+        }
+    }
+
+    /// Next-event estimation, weighed against hitting the lamp.
+    fn direct_light(&self, vertex: &Vertex, technique: Technique, stream: &mut SampleStream) -> Spectrum {
+        let (choice, u) = (stream.next_1d(), stream.next_2d());
+        let lights = self.scene.lights(self.wavelengths);
+        let Some(found) = lights.sample_towards(vertex.point.position, choice, u) else {
+            return Spectrum::ZERO;
+        };
+        let Some(scatter) = vertex.scatter(Walk::FromCamera, found.direction) else { return Spectrum::ZERO };
+        if !self.is_lit(vertex, &found) {
+            return Spectrum::ZERO;
+        }
+        let to_lamp = Edge::of_length(found.distance).jacobian(found.point.cos(found.direction));
+        let value = scatter.value * found.radiance * (to_lamp / found.pdf.0);
+        if technique == Technique::Emitters || lights.lights.get(found.point.light).is_delta() {
+            return value;
+        }
+        let (hit, chosen) = (self.heuristic.of(scatter.forward.0 * to_lamp), self.heuristic.of(found.pdf.0));
+        value * (chosen / (hit + chosen))
+    }
+}

@@ -1,0 +1,53 @@
+//! Where contributions go.
+
+use caustica_math::{Rgb, Spectrum, Vec2};
+use caustica_scene::camera::CameraPoint;
+use caustica_scene::light::LightPoint;
+
+use crate::strategy::Strategy;
+use crate::vertex::Vertex;
+
+/// Receives what a sample finds. A film is one; tests, pyramids and replays are others.
+pub trait Sink {
+    /// Whether [`Sink::contribution`] is wanted. It is called only if so.
+    const PROBES: bool = false;
+
+    /// The sample's value for its own pixel, of the eye image.
+    fn eye(&mut self, value: Rgb);
+
+    /// A splat into the light image, at a film position in pixels. The value is per light path; it is
+    /// already divided by their number in one pass.
+    fn splat(&mut self, film: Vec2, value: Rgb);
+
+    /// One strategy's contribution, before it is added.
+    fn contribution(&mut self, _: &Contribution<'_>) {}
+}
+
+/// The contribution of one strategy to one sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Contribution<'a> {
+    /// The strategy.
+    pub strategy: Strategy,
+    /// The unweighted estimate: the path's measured radiance over its density.
+    pub unweighted: Spectrum,
+    /// The MIS factor.
+    pub weight: f32,
+    /// Where on the film it goes, in pixels: the sample's own position for t ≥ 2.
+    pub film: Vec2,
+    /// The path.
+    pub path: PathView<'a>,
+}
+
+/// A full path, in two parts that are joined by the strategy's edge.
+#[derive(Clone, Copy, Debug)]
+pub struct PathView<'a> {
+    /// The point on the lamp.
+    pub lamp: LightPoint,
+    /// Surface vertices after the lamp, in the order of the light walk.
+    pub light: &'a [Vertex],
+    /// Surface vertices after the camera, in the order of the camera walk. For s = 0 the last of them is the
+    /// lamp itself, unless that is at infinity.
+    pub eye: &'a [Vertex],
+    /// The point on the camera.
+    pub camera: CameraPoint,
+}

@@ -1,0 +1,229 @@
+//! Random walks: how subpaths grow.
+
+use caustica_math::{SampleStream, Spectrum, Vec3};
+use caustica_scene::bsdf::Walk;
+use caustica_scene::bvh::Ray;
+use caustica_scene::light::Emission;
+
+use crate::edge::Edge;
+use crate::kernel::Kernel;
+use crate::vertex::Vertex;
+use crate::weight::{RunningSums, Step};
+
+/// A walk in flight: the segment that is about to be traced, and what is known of its start.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flight {
+    pub ray: Ray,
+    /// Throughput at the next vertex.
+    pub throughput: Spectrum,
+    /// Density of the ray's direction (from infinity: of its origin across the direction).
+    pub pdf: f32,
+    /// Where the edge starts; the ray may start further on. `None` at infinity.
+    pub from: Option<Vec3>,
+    /// |cos| at the start; one if it has no surface.
+    pub cos: f32,
+    /// Solid-angle density at the start of going back to the vertex before it.
+    pub reverse: f32,
+    /// Whether the start scattered by a Dirac lobe.
+    pub delta: bool,
+    /// Product of (n_camera/n_light)² so far, which roulette leaves out of account.
+    pub radiance_scale: f32,
+}
+
+/// A subpath: its surface vertices, without the point on the lamp or the lens.
+#[derive(Debug, Default)]
+pub(crate) struct Subpath {
+    pub vertices: Vec<Vertex>,
+    /// Density of the point on the lamp or lens by the opposite walk.
+    pub origin_reverse: f32,
+    /// Whether a camera walk left the scene, and how.
+    pub escape: Option<Escape>,
+}
+
+/// A camera walk that left the scene: a vertex at infinity.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Escape {
+    /// The unit direction in which it left.
+    pub direction: Vec3,
+    pub throughput: Spectrum,
+    /// Density of the direction, per solid angle.
+    pub forward: f32,
+    /// Jacobian to the last surface vertex.
+    pub back: f32,
+    pub sums: RunningSums,
+}
+
+/// Where a walk starts.
+pub(crate) enum Start<'a> {
+    Camera,
+    Light(&'a Emission),
+}
+
+impl Start<'_> {
+    fn walk(&self) -> Walk {
+        match self {
+            Start::Camera => Walk::FromCamera,
+            Start::Light(_) => Walk::FromLight,
+        }
+    }
+}
+
+/// Roulette lets a walk go on with this probability at most, so that every walk ends.
+const MAX_SURVIVAL: f32 = 0.99;
+
+impl Kernel<'_> {
+    /// Grows a subpath until it leaves the scene, is absorbed, dies by roulette, or is `max_edges` long.
+    pub(crate) fn grow(
+        &self,
+        mut flight: Flight,
+        start: &Start<'_>,
+        stream: &mut SampleStream,
+        path: &mut Subpath,
+    ) {
+        path.vertices.clear();
+        path.escape = None;
+        let walk = start.walk();
+        // A light path still needs an edge to the camera.
+        let max_edges = self.max_edges - usize::from(walk == Walk::FromLight);
+        let first_throughput = flight.throughput.max_lane();
+        while path.vertices.len() < max_edges {
+            let Some(point) = self.scene.closest(&flight.ray) else {
+                if walk == Walk::FromCamera {
+                    path.escape = Some(self.escape(&flight, path.vertices.last()));
+                }
+                return;
+            };
+            let Some(mut vertex) = Vertex::new(self.scene, point, -flight.ray.direction, self.wavelengths)
+            else {
+                return;
+            };
+            let edge = match flight.from {
+                Some(from) => Edge::finite(point.position.distance_squared(from)),
+                None => Edge::INFINITE,
+            };
+            vertex.forward = flight.pdf * edge.jacobian(vertex.cos(vertex.prev));
+            vertex.back = edge.jacobian(flight.cos);
+            vertex.throughput = flight.throughput;
+            if !(vertex.forward > 0.0 && vertex.forward.is_finite() && vertex.back.is_finite()) {
+                return;
+            }
+            vertex.sums = match path.vertices.last() {
+                None => self.first_sums(start, &vertex),
+                Some(previous) => self.step(previous.sums, &flight, vertex.forward, vertex.back),
+            };
+            path.vertices.push(vertex);
+            if path.vertices.len() == max_edges {
+                return;
+            }
+            if !self.scatter(walk, &mut flight, stream, path)
+                || !self.survives(&mut flight, first_throughput, (path.vertices.len(), stream))
+            {
+                return;
+            }
+        }
+    }
+
+    /// Scatters at the last vertex: sets up the next flight, and tells the vertex before the last its density
+    /// by the opposite walk. False if the walk ends.
+    #[inline]
+    fn scatter(
+        &self,
+        walk: Walk,
+        flight: &mut Flight,
+        stream: &mut SampleStream,
+        path: &mut Subpath,
+    ) -> bool {
+        let [u0, u1] = stream.next_2d();
+        let u2 = stream.next_1d();
+        let Some((vertex, before)) = path.vertices.split_last_mut() else { return false };
+        let Some((direction, scatter, delta)) = vertex.sample(walk, [u0, u1, u2]) else { return false };
+        vertex.delta = delta;
+        flight.throughput *= scatter.value * (1.0 / scatter.forward.0);
+        flight.pdf = scatter.forward.0;
+        flight.from = Some(vertex.point.position);
+        flight.cos = vertex.cos(direction);
+        flight.reverse = scatter.reverse.0;
+        flight.delta = delta;
+        flight.ray = Ray { origin: vertex.point.off_surface(direction), direction, t_max: f32::INFINITY };
+        if walk == Walk::FromCamera {
+            flight.radiance_scale *= vertex.radiance_scale(direction);
+        }
+        let reverse = scatter.reverse.0 * vertex.back;
+        match before.last_mut() {
+            Some(previous) => previous.reverse = reverse,
+            None => path.origin_reverse = reverse,
+        }
+        true
+    }
+
+    /// Russian roulette by what is left of the throughput, from the set number of bounces on.
+    #[inline]
+    fn survives(
+        &self,
+        flight: &mut Flight,
+        first_throughput: f32,
+        (bounces, stream): (usize, &mut SampleStream),
+    ) -> bool {
+        if bounces < self.roulette_start {
+            return true;
+        }
+        let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
+        let survival = left.min(MAX_SURVIVAL);
+        // A NaN fails the comparison and ends the walk.
+        let survives = stream.next_1d() < survival;
+        flight.throughput *= 1.0 / survival;
+        survives
+    }
+
+    /// The sums of the vertex at the end of the flight.
+    #[inline]
+    fn step(&self, sums: RunningSums, flight: &Flight, forward: f32, back: f32) -> RunningSums {
+        let step = Step { forward, reverse: flight.reverse, back, delta: flight.delta };
+        sums.step(step, self.classes.inner, self.heuristic)
+    }
+
+    /// The sums of a walk's first surface vertex.
+    #[inline]
+    fn first_sums(&self, start: &Start<'_>, vertex: &Vertex) -> RunningSums {
+        let h = self.heuristic;
+        let inverse = 1.0 / h.of(vertex.forward);
+        match start {
+            // One vertex less is t = 1, which every light path tries.
+            Start::Camera if self.classes.splat => {
+                RunningSums { recent: h.of(self.light_paths) * inverse, past: 0.0 }
+            }
+            Start::Camera => RunningSums::default(),
+            Start::Light(emission) => {
+                let lights = self.scene.lights(self.wavelengths);
+                let emitted = 1.0 / h.of(emission.pdf.point.0);
+                let mut sums = RunningSums::default();
+                if self.classes.next_event {
+                    // One vertex less is s = 1, which finds the lamp by another density.
+                    let found = lights.towards_pdf(vertex.point.position, &emission.point);
+                    sums.recent = h.of(found.0) * emitted * inverse;
+                }
+                if self.classes.hit && !lights.lights.get(emission.point.light).is_delta() {
+                    sums.past = h.of(vertex.back) * emitted * inverse;
+                }
+                sums
+            }
+        }
+    }
+
+    /// The vertex at infinity at the end of a camera walk's flight.
+    fn escape(&self, flight: &Flight, last: Option<&Vertex>) -> Escape {
+        let (forward, back) = (flight.pdf, Edge::INFINITE.jacobian(flight.cos));
+        let sums = match (last, flight.from) {
+            (Some(previous), _) => self.step(previous.sums, flight, forward, back),
+            // Seen directly: one vertex less is t = 1.
+            (None, Some(_)) if self.classes.splat => {
+                let h = self.heuristic;
+                RunningSums { recent: h.of(self.light_paths / forward), past: 0.0 }
+            }
+            // A parallel projection sees one direction only; no light path can be joined with it there.
+            (None, _) => RunningSums::default(),
+        };
+        let direction = flight.ray.direction;
+        Escape { direction, throughput: flight.throughput, forward, back, sums }
+    }
+}

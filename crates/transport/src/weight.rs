@@ -1,0 +1,150 @@
+//! Multiple importance sampling weights.
+//!
+//! Number the vertices of a path x₀ (lamp) to x_k (camera). The light walk makes xⱼ with density p→(xⱼ), the
+//! camera walk with p←(xⱼ), each in xⱼ's own measure. Strategy s has the density
+//! p_s = ∏_{j<s} p→(xⱼ) · ∏_{j≥s} p←(xⱼ), and the balance heuristic gives it the weight p_s/Σ pᵢ (Veach,
+//! "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 10.2). Two strategies have densities of
+//! their own at an end: next-event estimation finds x₀ with another density than emission, and strategy
+//! t = 1 is tried by every light path of a pass, N times as often as a pixel's eye path.
+//!
+//! Roulette is left out of all densities: its probability belongs to a walk and not to the path, and weights
+//! need only add up to one for each path. Every strategy's throughput is divided by it.
+//!
+//! Of the densities, the sum splits at the connection into what concerns light vertices and what concerns
+//! camera vertices. Each side is known but for two numbers by the time its last vertex is made:
+//! [`RunningSums`] carries it in two terms (Georgiev, "Implementing Vertex Connection and Merging", 2012;
+//! van Antwerpen, "A Survey of Importance Sampling Applications in Unbiased Physically Based Rendering",
+//! 2011). [`exhaustive`] adds up all strategies in O(n): the general case and the oracle of the tests.
+
+/// The function of a density by which strategies are weighed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Heuristic {
+    /// The density itself.
+    #[default]
+    Balance,
+    /// Its square.
+    Power,
+}
+
+impl Heuristic {
+    /// The function. It is multiplicative, so that it can be applied factor by factor.
+    #[inline]
+    pub fn of(self, density: f32) -> f32 {
+        match self {
+            Self::Balance => density,
+            Self::Power => density * density,
+        }
+    }
+}
+
+/// What a subpath that ends at vertex i contributes to the sum of all strategies' densities, relative to the
+/// density of the strategy that joins vertex i: `p←(xᵢ)·(recent + q·past)`, where p←(xᵢ) is the other walk's
+/// density of xᵢ and q its solid-angle density at xᵢ of going on to vertex i−1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RunningSums {
+    /// 1/p→(xᵢ) if the edge before xᵢ can be the one that joins: the strategy that is one vertex shorter.
+    pub recent: f32,
+    /// All strategies that are shorter still, over p→(xᵢ) and without q.
+    pub past: f32,
+}
+
+/// One step of a walk, as the sums need it.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Density of the new vertex, in its own measure.
+    pub forward: f32,
+    /// Solid-angle density at the old vertex of going back to the one before it.
+    pub reverse: f32,
+    /// Jacobian from the new vertex back to the old one's measure.
+    pub back: f32,
+    /// Whether the old vertex scattered by a Dirac lobe: then neither edge at it can join.
+    pub delta: bool,
+}
+
+impl RunningSums {
+    /// The sums at the next vertex. `joins` is whether strategies of class `inner` are in the set.
+    #[inline]
+    pub fn step(self, step: Step, joins: bool, h: Heuristic) -> Self {
+        let recent = if step.delta { 0.0 } else { self.recent };
+        let inverse = 1.0 / h.of(step.forward);
+        Self {
+            recent: if step.delta || !joins { 0.0 } else { inverse },
+            past: h.of(step.back) * inverse * (recent + h.of(step.reverse) * self.past),
+        }
+    }
+
+    /// The side's part of the sum, with the other walk's density of this vertex (in its own measure) and of
+    /// going on from it (per solid angle).
+    #[inline]
+    pub fn total(self, density: f32, onward: f32, h: Heuristic) -> f32 {
+        h.of(density) * (self.recent + h.of(onward) * self.past)
+    }
+}
+
+/// The weight of a strategy, given the two sides' sums relative to it.
+#[inline]
+pub fn weight(light_side: f32, eye_side: f32) -> f32 {
+    1.0 / (1.0 + light_side + eye_side)
+}
+
+/// The densities of one vertex of a full path.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct VertexDensities {
+    /// p→: by the light walk, in its own measure.
+    pub from_light: f32,
+    /// p←: by the camera walk, in its own measure.
+    pub from_camera: f32,
+    /// Whether it scatters by a Dirac lobe, or cannot be hit (a lamp without extent).
+    pub delta: bool,
+}
+
+/// The densities of the special ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends {
+    /// Density with which next-event estimation from x₁ finds x₀.
+    pub next_event: f32,
+    /// How many light paths try t = 1 for each eye path of a pixel.
+    pub light_paths: f32,
+}
+
+/// The weight of strategy `s` for a path of `vertices` (x₀ to x_{k−1}: all but the one on the camera), by
+/// adding up the densities of all strategies i for which `contains(i)`. O(n).
+pub fn exhaustive(
+    vertices: &[VertexDensities],
+    ends: Ends,
+    s: usize,
+    h: Heuristic,
+    contains: impl Fn(usize) -> bool,
+) -> f32 {
+    let k = vertices.len();
+    let joins = |i: usize| match i {
+        0 => !vertices[0].delta,
+        _ => !(i > 1 && vertices[i - 1].delta) && !(i < k && vertices[i].delta),
+    };
+    // What strategy i's density has beside the plain products.
+    let special = |i: usize| {
+        let next_event = if i == 1 && k > 1 { ends.next_event / vertices[0].from_light } else { 1.0 };
+        let light_paths = if i == k { ends.light_paths } else { 1.0 };
+        f64::from(next_event) * f64::from(light_paths)
+    };
+    // Densities relative to the plain product of strategy s, whose factors are positive; in f64, because
+    // long paths span many decades.
+    let square = |d: f64| if h == Heuristic::Power { d * d } else { d };
+    let own = square(special(s));
+    let mut sum = own;
+    let mut ratio = 1.0_f64;
+    for i in (0..s).rev() {
+        ratio *= f64::from(vertices[i].from_camera) / f64::from(vertices[i].from_light);
+        if joins(i) && contains(i) {
+            sum += square(ratio * special(i));
+        }
+    }
+    ratio = 1.0;
+    for i in s + 1..=k {
+        ratio *= f64::from(vertices[i - 1].from_light) / f64::from(vertices[i - 1].from_camera);
+        if joins(i) && contains(i) {
+            sum += square(ratio * special(i));
+        }
+    }
+    (own / sum) as f32
+}
