@@ -90,7 +90,7 @@ fn polygons() {
     let mesh = good(&format!("{SQUARE}f 1 2 3 4\n"));
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     // A notch at the second corner: a fan from the first would cover what is outside.
-    let mesh = good("v 0 3 0\nv -2 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\n");
+    let mesh = good("v -2 0 0\nv 0 1 0\nv 2 0 0\nv 0 3 0\nf 1 2 3 4\n");
     let area: f32 = mesh
         .triangles
         .iter()

@@ -243,6 +243,8 @@ fn tests() {
     refused(&ttest(""), "nothing to test");
     let bsdf = "<bsdf type='diffuse'/>";
     refused(&ttest(&format!("{bsdf}<string name='angles' value='0 1'/>")), "has 0 references and needs 2");
+    let lists = "<string name='angles' value='0'/><string name='references' value='1 2'/>";
+    refused(&ttest(&format!("{bsdf}{lists}")), "has 2 references and needs 1");
     let scene = "<scene><camera type='perspective'/><integrator type='ao'/></scene>";
     refused(&ttest(&format!("{bsdf}{scene}")), "not about several");
     refused(&format!("§<test type='chi2test'>{scene}</test>"), "tests BSDFs");

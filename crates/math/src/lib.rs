@@ -19,7 +19,7 @@ pub mod vector;
 pub mod warp;
 
 pub use distribution::{Distribution1d, Distribution2d};
-pub use filter::Filter;
+pub use filter::{Filter, PixelFilter};
 pub use frame::Frame;
 pub use pdf::{AreaPdf, Mass, SolidAnglePdf};
 pub use spectrum::{Rgb, Spectrum, Wavelengths};

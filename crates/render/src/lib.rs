@@ -1,1 +1,9 @@
-//! render
+//! Render sessions: threads, budgets, progress, cancellation; and what is done with a scene beside rendering
+//! it: replaying one sample, running the tests that a scene file carries, and describing what was loaded.
+
+mod names;
+mod queue;
+mod session;
+
+pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};
+pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session};

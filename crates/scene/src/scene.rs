@@ -5,7 +5,9 @@ use caustica_math::{Frame, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray};
 use crate::camera::Camera;
-use crate::description::{Description, FilmSettings, Image, LightKind, MaterialKind};
+use crate::description::{
+    Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture,
+};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
@@ -30,6 +32,7 @@ pub struct Scene {
     lights: Lights,
     center: Vec3,
     radius: f32,
+    brightest: f32,
 }
 
 impl Scene {
@@ -63,7 +66,9 @@ impl Scene {
             lights: Lights::new(Vec::new(), &[]),
             center,
             radius,
+            brightest: 0.0,
         };
+        scene.brightest = scene.brightest_of(&description);
         scene.lights = scene.flatten_lights(&description, &mut warnings)?;
         crate::warnings::check(&scene, &description, &mut warnings);
         Ok((scene, warnings))
@@ -249,6 +254,29 @@ impl Scene {
         &self.lights
     }
 
+    /// The largest radiance that can be seen directly, of any lamp and channel; zero if lamps have no extent.
+    pub fn brightest(&self) -> f32 {
+        self.brightest
+    }
+
+    fn brightest_of(&self, description: &Description) -> f32 {
+        let of_image = |i: ImageId| {
+            self.images[i.0 as usize].pixels.iter().fold(0.0_f32, |m, p| m.max(p.max_channel()))
+        };
+        let of_texture = |t: &Texture| match t {
+            Texture::Constant(c) => c.max_channel(),
+            Texture::Checkerboard { value1, value2, .. } => value1.max_channel().max(value2.max_channel()),
+            Texture::Image { image, .. } => of_image(*image),
+        };
+        let surfaces = description.shapes.iter().filter_map(|s| s.emission.as_ref()).map(of_texture);
+        let environments = description.lights.iter().map(|l| match l.kind {
+            LightKind::Constant { radiance } => radiance.max_channel(),
+            LightKind::Environment { image, scale, .. } => of_image(image) * scale,
+            _ => 0.0,
+        });
+        surfaces.chain(environments).fold(0.0, f32::max)
+    }
+
     /// Centre and radius of a sphere around all surfaces.
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
@@ -257,7 +285,6 @@ impl Scene {
 
 /// Every id must name something.
 fn check_references(d: &Description) -> Result<(), Diagnostic> {
-    use crate::description::Texture;
     let image_exists = |t: &Texture| match t {
         Texture::Image { image, .. } => (image.0 as usize) < d.images.len(),
         _ => true,

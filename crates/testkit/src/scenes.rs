@@ -1,9 +1,12 @@
 //! Scenes that tests share.
 
+use caustica_math::{Rgb, Transform};
 use caustica_scene::Description;
-use caustica_scene::description::MaterialKind;
+use caustica_scene::description::{
+    CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Texture, TextureTransform,
+};
 
-use crate::build::{diffuse, emit, point_light, scene, sphere};
+use crate::build::{add, diffuse, ellipsoid, emit, light, look, point_light, quad, scene, sphere};
 
 /// Inside of a sphere of albedo ½ and emission ½: radiance 1 everywhere. The sphere's normals point out, so it is
 /// made of a mesh turned inside out; see [`inside_out`].
@@ -27,13 +30,13 @@ pub fn point_furnace(lamps: u32) -> Description {
 }
 
 /// A unit sphere whose normals point inward: a fine mesh with reversed triangles.
-pub fn inside_out(d: &mut Description, material: caustica_scene::description::MaterialId) -> usize {
-    let mut mesh = crate::build::ellipsoid(96, [1.0; 3]);
+pub fn inside_out(d: &mut Description, material: MaterialId) -> usize {
+    let mut mesh = ellipsoid(96, [1.0; 3]);
     for t in &mut mesh.triangles {
         t.swap(1, 2);
     }
     mesh.normals.clear();
-    crate::build::add(d, "shell", caustica_scene::description::Geometry::Mesh(mesh), material)
+    add(d, "shell", Geometry::Mesh(mesh), material)
 }
 
 /// A glass ball in a furnace: radiance inside scales by η², outside it is that of the furnace.
@@ -41,5 +44,134 @@ pub fn glass_furnace() -> Description {
     let mut d = furnace();
     let m = d.add_material(MaterialKind::Dielectric { interior_ior: 1.5, exterior_ior: 1.0 });
     sphere(&mut d, [0.1, 0.0, 0.5], 0.2, m);
+    d
+}
+
+/// An open box (floor, back and left walls, ceiling) from −1 to 1 with a lamp below the ceiling, seen from the
+/// front: what most agreement scenes start from. The lamp is shape 4.
+pub fn open_box() -> Description {
+    let mut d = scene(16);
+    look(&mut d, [0.0, 0.0, -3.2], [0.0, 0.0, 0.0]);
+    d.camera.kind = CameraKind::Perspective { fov: 45.0 };
+    let (white, red) = (diffuse(&mut d, 0.7), diffuse(&mut d, 0.4));
+    quad(&mut d, [-1.0, -1.0, -1.0], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0], white);
+    quad(&mut d, [-1.0, -1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0], white);
+    quad(&mut d, [-1.0, -1.0, -1.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0], red);
+    quad(&mut d, [-1.0, 1.0, -1.0], [2.0, 0.0, 0.0], [0.0, 0.0, 2.0], white);
+    let lamp = quad(&mut d, [-0.4, 0.95, -0.4], [0.8, 0.0, 0.0], [0.0, 0.0, 0.8], white);
+    emit(&mut d, lamp, 8.0);
+    d
+}
+
+/// The box without its lamp.
+pub fn dark_box() -> Description {
+    let mut d = open_box();
+    d.shapes.pop();
+    d
+}
+
+/// The box with a ball of some material.
+pub fn ball(kind: MaterialKind) -> Description {
+    let mut d = open_box();
+    let m = d.add_material(kind);
+    sphere(&mut d, [0.1, -0.4, 0.1], 0.5, m);
+    d
+}
+
+/// Glass of index 1.5, in either order.
+pub fn glass_kind(inverted: bool) -> MaterialKind {
+    let (interior_ior, exterior_ior) = if inverted { (1.0, 1.5) } else { (1.5, 1.0) };
+    MaterialKind::Dielectric { interior_ior, exterior_ior }
+}
+
+/// Rough glass.
+pub fn rough_glass_kind() -> MaterialKind {
+    MaterialKind::RoughDielectric { alpha: 0.3, interior_ior: 1.5, exterior_ior: 1.0 }
+}
+
+/// Copper, smooth or rough.
+pub fn metal_kind(alpha: Option<f32>) -> MaterialKind {
+    let (eta, k) = (Rgb::new(0.2, 0.92, 1.1), Rgb::new(3.91, 2.45, 2.14));
+    match alpha {
+        None => MaterialKind::Conductor { eta, k, reflectance: Rgb::WHITE },
+        Some(alpha) => MaterialKind::RoughConductor { alpha, eta, k, reflectance: Rgb::WHITE },
+    }
+}
+
+/// Nori's plastic.
+pub fn plastic_kind() -> MaterialKind {
+    MaterialKind::Microfacet {
+        alpha: 0.2,
+        interior_ior: 1.5,
+        exterior_ior: 1.0,
+        kd: Rgb::new(0.3, 0.2, 0.4).into(),
+    }
+}
+
+/// The box with a coarse ellipsoid whose shading normals lean far from the geometric ones.
+pub fn smooth_mesh(kind: MaterialKind) -> Description {
+    let mut d = open_box();
+    let m = d.add_material(kind);
+    let index = add(&mut d, "ellipsoid", Geometry::Mesh(ellipsoid(5, [0.6, 0.45, 0.5])), m);
+    d.shapes[index].to_world = Transform::translate([0.0, -0.5, 0.0]);
+    d
+}
+
+/// An environment with a sun, as an image of 16 × 8 pixels.
+pub fn sky(d: &mut Description) {
+    let mut pixels: Vec<Rgb> = (0..128).map(|i| Rgb::splat(0.3 + 0.02 * (i % 16) as f32)).collect();
+    pixels[2 * 16 + 5] = Rgb::new(60.0, 50.0, 40.0);
+    let image = d.add_image(Image { width: 16, height: 8, pixels: pixels.into() });
+    let to_world = Transform::rotate(40.0, [0.0, 1.0, 0.2]);
+    light(d, LightKind::Environment { image, to_world, scale: 0.5 });
+}
+
+/// A ball on a floor under a sky.
+pub fn under_the_sky(kind: MaterialKind) -> Description {
+    let mut d = scene(16);
+    look(&mut d, [0.0, 1.0, -3.0], [0.0, 0.3, 0.0]);
+    let (white, ball) = (diffuse(&mut d, 0.6), d.add_material(kind));
+    quad(&mut d, [-2.0, 0.0, -2.0], [0.0, 0.0, 4.0], [4.0, 0.0, 0.0], white);
+    sphere(&mut d, [0.0, 0.6, 0.0], 0.5, ball);
+    sky(&mut d);
+    d
+}
+
+/// The dark box under the given lamp.
+pub fn lit_by(kind: LightKind) -> Description {
+    let mut d = dark_box();
+    let plastic = d.add_material(plastic_kind());
+    sphere(&mut d, [0.2, -0.5, 0.0], 0.4, plastic);
+    light(&mut d, kind);
+    d
+}
+
+/// The box with a lamp, a floor and a ball that are textured.
+pub fn textured() -> Description {
+    let mut d = open_box();
+    let checks = |a, b| Texture::Checkerboard {
+        delta: [0.0; 2],
+        scale: [0.25; 2],
+        value1: Rgb::splat(a),
+        value2: Rgb::splat(b),
+    };
+    d.materials[0].kind = MaterialKind::Diffuse { albedo: checks(0.1, 0.8) };
+    let pixels: Vec<Rgb> = (0..16).map(|i| Rgb::splat(if i == 5 { 30.0 } else { 2.0 })).collect();
+    let image = d.add_image(Image { width: 4, height: 4, pixels: pixels.into() });
+    let lamp = Texture::Image { image, transform: TextureTransform::default() };
+    d.shapes[4].emission = Some(lamp);
+    let shade = diffuse(&mut d, 0.3);
+    let ball = sphere(&mut d, [0.3, -0.5, 0.0], 0.3, shade);
+    d.shapes[ball].emission = Some(checks(0.0, 0.8));
+    d
+}
+
+/// The dark box with a lamp in a glass bulb: light that no next-event estimation finds.
+pub fn bulb() -> Description {
+    let mut d = dark_box();
+    let (glass, black) = (d.add_material(glass_kind(false)), diffuse(&mut d, 0.2));
+    sphere(&mut d, [0.0, 0.2, 0.0], 0.45, glass);
+    let lamp = sphere(&mut d, [0.0, 0.2, 0.0], 0.25, black);
+    emit(&mut d, lamp, 3.0);
     d
 }

@@ -168,7 +168,7 @@ impl<'o, 'p> Fields<'o, 'p> {
     }
 
     pub(super) fn transform(&mut self, names: &[&'static str]) -> Result<Transform, Diagnostic> {
-        let pick = |v: &Value| if let Value::Transform(t) = v { Some(*t) } else { None };
+        let pick = |v: &Value| if let Value::Transform(t) = v { Some(**t) } else { None };
         Ok(self.get(names, "a transform", pick)?.map_or(Transform::IDENTITY, |(t, _)| t))
     }
 

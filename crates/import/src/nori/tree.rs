@@ -96,7 +96,7 @@ fn property(place: Place, node: Node) -> Result<Property, Diagnostic> {
     let is_transform = tag == "transform";
     check_attributes(place, node, if is_transform { &["name"] } else { &["name", "value"] }, &[])?;
     let (value, value_range) = if is_transform {
-        (Value::Transform(transform::parse(place, node)?), tag_range(node))
+        (Value::Transform(Box::new(transform::parse(place, node)?)), tag_range(node))
     } else {
         if let Some(child) = elements(place, node)?.first() {
             return Err(place.error(format!("nothing can stand inside <{tag}>"), tag_range(*child)));

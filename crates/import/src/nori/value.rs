@@ -18,7 +18,7 @@ pub(super) enum Value {
     /// Two or three coordinates.
     Vector(Vec<f64>),
     Color([f64; 3]),
-    Transform(Transform),
+    Transform(Box<Transform>),
 }
 
 impl Value {

@@ -7,8 +7,8 @@ use super::ggx::{Ggx, half_vector, reflected};
 use super::specular::{Dielectric, sides};
 use super::{Evaluated, Scattered, Walk};
 
-/// Indices that differ by a smaller share than this bend light by less than single precision resolves: the
-/// interface is taken as absent.
+/// Indices that differ by a smaller share than this bend light by less than a ten-thousandth, while single
+/// precision loses the microfacet normals: the interface is taken as absent.
 const MATCHED: f32 = 1e-4;
 
 /// An interface between two dielectrics whose microfacets are distributed by GGX. It reflects and refracts,
@@ -54,10 +54,10 @@ impl RoughDielectric {
 
     #[inline]
     pub(super) fn eval(&self, to_light: Vec3, to_camera: Vec3) -> Evaluated {
-        if self.is_matched() {
+        if self.is_matched() || to_light.z == 0.0 || to_camera.z == 0.0 {
             return Evaluated::default();
         }
-        let evaluated = if to_light.z * to_camera.z > 0.0 {
+        let evaluated = if (to_light.z > 0.0) == (to_camera.z > 0.0) {
             self.eval_reflection(to_light, to_camera)
         } else {
             self.eval_transmission(to_light, to_camera)

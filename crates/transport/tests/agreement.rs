@@ -1,0 +1,167 @@
+//! Block by block, `naive`, `path`, `light` and `bdpt` (and parts of it) agree: Welch's t-test at a significance
+//! of 10⁻³ a pair of pictures, Šidák-corrected over the blocks; seeds are fixed.
+
+use caustica_math::{Filter, Rgb};
+use caustica_scene::Description;
+use caustica_scene::description::{CameraKind, Crop, Integrator, LightKind, Technique};
+use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten};
+use caustica_testkit::scenes::*;
+use caustica_transport::{Heuristic, Settings};
+
+/// A way to render, as tests name them.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    Naive,
+    Path,
+    Emitters,
+    Light,
+    Bdpt,
+    /// Bidirectional, by the power heuristic.
+    Power,
+    /// Bidirectional without the light image, with weights of the restricted set.
+    NoLightImage,
+    /// A set that is no union of classes, with exhaustive weights.
+    Odd,
+}
+
+fn settings(way: Way, seed: u64) -> Settings {
+    let base = Settings { seed, max_depth: Some(9), ..Settings::default() };
+    let integrator = |integrator| Settings { integrator, ..base.clone() };
+    let strategies = |text: &str| Settings { strategies: text.parse().unwrap(), ..base.clone() };
+    match way {
+        Way::Naive => integrator(Integrator::Path(Technique::Materials)),
+        Way::Path => integrator(Integrator::Path(Technique::Mis)),
+        Way::Emitters => integrator(Integrator::Path(Technique::Emitters)),
+        Way::Light => integrator(Integrator::Light),
+        Way::Bdpt => base,
+        Way::Power => Settings { heuristic: Heuristic::Power, ..base },
+        Way::NoLightImage => strategies("t>=2"),
+        Way::Odd => strategies("s=0;s=1;t>=3;s=2&t=2"),
+    }
+}
+
+/// Renders a scene in several ways and compares each with the first.
+fn check(name: &str, description: Description, passes: u32, ways: &[Way]) {
+    let scene = flatten(description);
+    let plan = Plan { passes, block: 4, only: None };
+    let render = |(i, way): (usize, &Way)| estimate(&scene, &settings(*way, 11 + i as u64), plan);
+    let estimates: Vec<Estimate> = ways.iter().enumerate().map(render).collect();
+    for (i, e) in estimates.iter().enumerate() {
+        println!("{name} {i}: {:.5} ± {:.5}", e.whole.mean, e.whole.variance_of_mean().sqrt());
+    }
+    for (i, e) in estimates.iter().enumerate().skip(1) {
+        if let Err(message) = agree(&estimates[0], e) {
+            panic!("{name}: way {i} differs from way 0 in {message}");
+        }
+    }
+}
+
+use Way::*;
+
+#[test]
+fn diffuse_box() {
+    check("box", open_box(), 400, &[Bdpt, Naive, Path, Emitters, Light, Power, NoLightImage, Odd]);
+}
+
+#[test]
+fn glass() {
+    check("glass", ball(glass_kind(false)), 6000, &[Bdpt, Naive, Path, Power, NoLightImage, Odd]);
+}
+
+#[test]
+fn inverted_glass() {
+    check("inverted", ball(glass_kind(true)), 600, &[Bdpt, Naive, Path]);
+}
+
+#[test]
+fn rough_glass() {
+    check("rough glass", ball(rough_glass_kind()), 400, &[Bdpt, Naive, Path, Light, Odd]);
+}
+
+#[test]
+fn metals() {
+    check("smooth metal", ball(metal_kind(None)), 400, &[Bdpt, Naive, Path]);
+    check("rough metal", ball(metal_kind(Some(0.15))), 400, &[Bdpt, Naive, Path, Light]);
+}
+
+#[test]
+fn plastic() {
+    check("plastic", ball(plastic_kind()), 400, &[Bdpt, Naive, Path, Light, Odd]);
+}
+
+#[test]
+fn shading_normals() {
+    let white = caustica_scene::description::MaterialKind::Diffuse { albedo: Rgb::splat(0.8).into() };
+    check("smooth diffuse", smooth_mesh(white), 600, &[Bdpt, Naive, Path, Light]);
+    check("smooth glass", smooth_mesh(glass_kind(false)), 600, &[Bdpt, Naive, Path]);
+    check("smooth rough glass", smooth_mesh(rough_glass_kind()), 400, &[Bdpt, Naive, Path, Light]);
+    check("smooth metal", smooth_mesh(metal_kind(Some(0.2))), 400, &[Bdpt, Path, Light]);
+}
+
+#[test]
+fn environment_light() {
+    check("sky", under_the_sky(plastic_kind()), 600, &[Bdpt, Naive, Path, Emitters, Light, Odd]);
+    check("sky, glass", under_the_sky(glass_kind(false)), 600, &[Bdpt, Naive, Path]);
+    let mut both = open_box();
+    caustica_testkit::build::light(&mut both, LightKind::Constant { radiance: Rgb::splat(0.4) });
+    check("lamp and sky", both, 400, &[Bdpt, Naive, Path, Light]);
+}
+
+#[test]
+fn delta_lights() {
+    let white = Rgb::splat(3.0);
+    let point = LightKind::Point { position: [0.3, 0.6, -0.2], intensity: white };
+    let spot = |inner_angle, outer_angle| LightKind::Spot {
+        position: [0.5, 0.7, -0.5],
+        direction: [-0.4, -1.0, 0.5],
+        intensity: white,
+        inner_angle,
+        outer_angle,
+    };
+    let sun = LightKind::Directional { direction: [0.2, -0.3, 1.0], irradiance: white };
+    check("point", lit_by(point), 400, &[Bdpt, Path, Light, Odd]);
+    check("spot", lit_by(spot(20.0, 35.0)), 400, &[Bdpt, Path, Light]);
+    check("narrow spot", lit_by(spot(6.0, 7.0)), 800, &[Bdpt, Light, Odd]);
+    check("sun", lit_by(sun), 400, &[Bdpt, Path, Light, Odd]);
+}
+
+#[test]
+fn textured_lamps() {
+    check("textured", textured(), 600, &[Bdpt, Naive, Path, Light]);
+}
+
+#[test]
+fn lamp_in_a_glass_bulb() {
+    check("bulb", bulb(), 800, &[Bdpt, Naive, NoLightImage]);
+}
+
+#[test]
+fn cameras() {
+    let with = |kind: CameraKind| {
+        let mut d = ball(metal_kind(Some(0.3)));
+        d.camera.kind = kind;
+        d
+    };
+    let lens = CameraKind::ThinLens { fov: 45.0, aperture_radius: 0.2, focus_distance: 2.5 };
+    check("thin lens", with(lens), 400, &[Bdpt, Path, Light]);
+    check("orthographic", with(CameraKind::Orthographic), 400, &[Bdpt, Path, Light, Odd]);
+    let mut around = with(CameraKind::Environment);
+    around.camera.to_world = caustica_math::Transform::translate([0.1, 0.2, -0.3]);
+    around.film.filter = Filter::Gaussian { radius: 2.0, stddev: 0.7 };
+    check("360°", around, 400, &[Bdpt, Path, Light]);
+    let mut sky = under_the_sky(plastic_kind());
+    sky.camera.kind = CameraKind::Orthographic;
+    check("orthographic sky", sky, 400, &[Bdpt, Path, Odd]);
+    let mut sky = under_the_sky(plastic_kind());
+    sky.camera.kind = CameraKind::Environment;
+    check("360° sky", sky, 400, &[Bdpt, Path, Light, Odd]);
+}
+
+#[test]
+fn crop_window_and_wide_filter() {
+    let mut d = ball(plastic_kind());
+    (d.film.width, d.film.height) = (40, 30);
+    d.film.crop = Some(Crop { x: 9, y: 3, width: 16, height: 12 });
+    d.film.filter = Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
+    check("crop", d, 600, &[Bdpt, Path, Light, NoLightImage]);
+}
