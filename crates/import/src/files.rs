@@ -4,6 +4,22 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+/// Where the files lie that a scene names.
+#[derive(Clone, Copy)]
+pub(crate) struct Folder<'a> {
+    /// Relative paths start here.
+    pub(crate) base: &'a Path,
+    /// Meshes that come with the program, by name; they hide files.
+    pub(crate) embedded: &'a [(&'a str, &'a str)],
+}
+
+impl<'a> Folder<'a> {
+    /// The text of an embedded mesh.
+    pub(crate) fn embedded(&self, name: &str) -> Option<&'a str> {
+        self.embedded.iter().find(|(n, _)| *n == name).map(|(_, text)| *text)
+    }
+}
+
 /// Opens a regular file and tells its size; the error says why that failed, in words.
 pub(crate) fn open(path: &Path) -> Result<(File, u64), String> {
     // Asked before opening: opening a named pipe would wait for a writer.

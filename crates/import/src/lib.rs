@@ -14,6 +14,8 @@ use std::path::Path;
 
 use caustica_scene::{Description, Diagnostic};
 
+use files::Folder;
+
 pub use image::{ReadImage, read_image};
 pub use nori::{SceneTest, TestKind};
 pub use obj::{ObjMesh, load_obj, read_obj};
@@ -55,11 +57,20 @@ pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
 /// Reads a scene from the text of a Nori scene file. `file_name` is for messages; relative paths start
 /// at `base_dir`.
 pub fn parse_nori(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded, Diagnostic> {
+    parse(text, file_name, Folder { base: base_dir, embedded: &[] })
+}
+
+/// Reads a scene that comes with the program: its text, and its meshes as (name, OBJ text).
+pub fn parse_embedded(text: &str, file_name: &str, meshes: &[(&str, &str)]) -> Result<Loaded, Diagnostic> {
+    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes })
+}
+
+fn parse(text: &str, file_name: &str, folder: Folder<'_>) -> Result<Loaded, Diagnostic> {
     if text.len() as u64 > LARGEST_SCENE_FILE {
         return Err(Diagnostic::error(format!(
             "`{file_name}` is larger than {} MiB",
             LARGEST_SCENE_FILE >> 20
         )));
     }
-    nori::read(&source::Source::new(file_name, text), base_dir)
+    nori::read(&source::Source::new(file_name, text), folder)
 }

@@ -6,6 +6,7 @@
 //!
 //! Everything here gives the same bits on every machine of the target family: see [`elementary`].
 
+pub mod chi_square;
 pub mod distribution;
 pub mod elementary;
 pub mod filter;

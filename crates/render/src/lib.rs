@@ -1,8 +1,11 @@
 //! Render sessions: threads, budgets, progress, cancellation; and what is done with a scene beside rendering
 //! it: replaying one sample, running the tests that a scene file carries, and describing what was loaded.
 
+pub mod info;
 mod names;
 mod queue;
+pub mod replay;
+pub mod scene_tests;
 mod session;
 
 pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};

@@ -316,6 +316,11 @@ impl Camera {
         candidates.filter(inside)
     }
 
+    /// Where the camera looks: a unit vector.
+    pub fn forward(&self) -> Vec3 {
+        self.axes[2]
+    }
+
     /// Where the camera is.
     pub fn position(&self) -> Vec3 {
         self.origin

@@ -7,8 +7,9 @@
 
 use std::f64::consts::PI;
 
+use caustica_math::chi_square::{Cell, Integrand, spherical};
 use caustica_math::stats::chi_square_test;
-use caustica_math::{SampleStream, StreamId, Vec3, elementary};
+use caustica_math::{SampleStream, StreamId, Vec3};
 
 /// How thorough a test is.
 #[derive(Clone, Copy, Debug)]
@@ -33,13 +34,6 @@ impl Default for ChiSquareConfig {
     fn default() -> Self {
         Self { samples: 60_000, pilot: 6_000, rows: 8, columns: 12, minimum: 5.0, tolerance: 1e-3, seed: 1 }
     }
-}
-
-/// A rectangle in cos θ and φ.
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    cos: [f64; 2],
-    phi: [f64; 2],
 }
 
 /// The cells of the sphere: rows of columns.
@@ -92,7 +86,7 @@ pub fn chi_square_sphere(
         return Err(format!("{name}: {impossible} of {n} samples lie where the density is zero"));
     }
 
-    let integrand = Integrand { pdf, samples: n };
+    let integrand = Integrand { pdf, samples: n, tolerance: 1e-7 };
     let shares: Vec<f64> =
         cells.iter().zip(&mut points).map(|(cell, points)| integrand.over(*cell, points)).collect();
     let total: f64 = shares.iter().sum();
@@ -108,26 +102,7 @@ pub fn chi_square_sphere(
     observed.push(failed);
     let mut expected: Vec<f64> = shares.iter().map(|s| (s * n).max(n * 1e-6)).collect();
     expected.push(((1.0 - total) * n).max(n * 1e-5));
-    let o = chi_square_test(&observed, &expected, config.minimum, n);
-    if o.p_value < 1e-4 {
-        eprintln!("{name} total {total} stat {} deg {}", o.statistic, o.degrees);
-        let mut w: Vec<(f64, usize)> = (0..expected.len())
-            .map(|i| ((observed[i] - expected[i]).powi(2) / expected[i].max(1e-3), i))
-            .collect();
-        w.sort_by(|a, b| b.0.total_cmp(&a.0));
-        for (x, i) in w.iter().take(4) {
-            eprintln!("   {x:.1} obs {} exp {} {:?}", observed[*i], expected[*i], cells.get(*i));
-        }
-    }
     Ok(chi_square_test(&observed, &expected, config.minimum, n).p_value)
-}
-
-/// cos θ and φ of a direction.
-fn spherical(v: Vec3) -> [f64; 2] {
-    let r2 = f64::from(v.x).powi(2) + f64::from(v.y).powi(2);
-    // Near the poles x and y know the angle better than z does.
-    let cos = if r2 < 0.5 { (1.0 - r2).sqrt().copysign(f64::from(v.z)) } else { f64::from(v.z) };
-    [cos, f64::from(elementary::atan2(v.y, v.x)).clamp(-PI, PI)]
 }
 
 /// The two ends, and between them the quantiles of the sorted values in `parts` parts, from just below the
@@ -181,103 +156,6 @@ impl Grid {
         let before: usize = self.phi_edges[..row].iter().map(|e| e.len() - 1).sum();
         before + find(&self.phi_edges[row], phi)
     }
-}
-
-/// Nodes and weights of Simpson's rule on [0, 1]. Nodes at the rims notice a lobe that starts there; they are
-/// just inside, because densities may jump at the edges of cells (the horizon is one). The second-order
-/// error of that displacement vanishes as cells are refined.
-const SIMPSON: [(f64, f64); 3] = [(1e-4, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0 - 1e-4, 1.0 / 6.0)];
-
-/// What is integrated over the cells.
-struct Integrand<'a> {
-    pdf: &'a dyn Fn(Vec3) -> f64,
-    /// How many samples were counted in all.
-    samples: f64,
-}
-
-impl Integrand<'_> {
-    /// The integral over a cell that holds the given `points`, adaptively. The order of the points changes.
-    fn over(&self, cell: Cell, points: &mut [[f64; 2]]) -> f64 {
-        self.refine(cell, points, self.rule(cell), 14)
-    }
-
-    fn refine(&self, cell: Cell, points: &mut [[f64; 2]], whole: f64, depth: u32) -> f64 {
-        let quarters = cell.quarters();
-        let parts = quarters.map(|q| self.rule(q));
-        let sum: f64 = parts.iter().sum();
-        // Absolute, as a share of all samples, and small because the errors at the rim of a lobe add up.
-        let steady = (sum - whole).abs() < 1e-7;
-        // A peak or an edge can hide between the nodes, but not from the points. This leads to no false
-        // agreement: it is always the integral that is refined, and it has but one limit.
-        let (expected, count) = (sum * self.samples, points.len() as f64);
-        let plausible = (expected - count).abs() <= 3.0 * expected.sqrt() + 1.0;
-        if depth == 0 || (steady && plausible) {
-            // Richardson's extrapolation, for a rule of the fourth order.
-            return sum + (sum - whole) / 15.0;
-        }
-        let [c, p] = cell.middle();
-        let (south, north) = partition(points, 0, c);
-        let (south_west, south_east) = partition(south, 1, p);
-        let (north_west, north_east) = partition(north, 1, p);
-        let points = [south_west, south_east, north_west, north_east];
-        quarters
-            .into_iter()
-            .zip(points)
-            .zip(parts)
-            .map(|((quarter, points), part)| self.refine(quarter, points, part, depth - 1))
-            .sum()
-    }
-
-    /// One tensor rule of 3 × 3 nodes.
-    fn rule(&self, cell: Cell) -> f64 {
-        let [width, height] = [cell.phi[1] - cell.phi[0], cell.cos[1] - cell.cos[0]];
-        let mut sum = 0.0;
-        for (x, weight_x) in SIMPSON {
-            let (sin_phi, cos_phi) = sin_cos(cell.phi[0] + x * width);
-            for (y, weight_y) in SIMPSON {
-                let z = cell.cos[0] + y * height;
-                let r = ((1.0 - z) * (1.0 + z)).max(0.0).sqrt();
-                let v = Vec3::new((r * cos_phi) as f32, (r * sin_phi) as f32, z as f32);
-                sum += weight_x * weight_y * (self.pdf)(v);
-            }
-        }
-        sum * width * height
-    }
-}
-
-impl Cell {
-    fn middle(self) -> [f64; 2] {
-        [0.5 * (self.cos[0] + self.cos[1]), 0.5 * (self.phi[0] + self.phi[1])]
-    }
-
-    /// South-west, south-east, north-west, north-east: cos θ grows to the north, φ to the east.
-    fn quarters(self) -> [Self; 4] {
-        let [c, p] = self.middle();
-        let cell = |cos, phi| Self { cos, phi };
-        [
-            cell([self.cos[0], c], [self.phi[0], p]),
-            cell([self.cos[0], c], [p, self.phi[1]]),
-            cell([c, self.cos[1]], [self.phi[0], p]),
-            cell([c, self.cos[1]], [p, self.phi[1]]),
-        ]
-    }
-}
-
-/// The points whose coordinate is below `at`, and the others.
-fn partition(points: &mut [[f64; 2]], axis: usize, at: f64) -> (&mut [[f64; 2]], &mut [[f64; 2]]) {
-    let mut below = 0;
-    for i in 0..points.len() {
-        if points[i][axis] < at {
-            points.swap(i, below);
-            below += 1;
-        }
-    }
-    points.split_at_mut(below)
-}
-
-fn sin_cos(phi: f64) -> (f64, f64) {
-    let (s, c) = elementary::sin_cos(phi as f32);
-    (f64::from(s), f64::from(c))
 }
 
 #[cfg(test)]

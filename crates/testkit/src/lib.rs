@@ -3,4 +3,5 @@
 pub mod agreement;
 pub mod build;
 pub mod chi_square;
+pub mod oracle;
 pub mod scenes;

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use caustica_scene::description::{Geometry, ImageId, MaterialId, MaterialKind, Mesh};
 use caustica_scene::{Description, Diagnostic, Origin};
 
 use super::tree::Place;
+use crate::files::Folder;
 use crate::{image, obj};
 
 /// The most warnings that are kept: more of them help nobody.
@@ -38,7 +39,7 @@ impl Warnings {
 /// A description that is being filled.
 pub(super) struct Context<'c> {
     pub(super) place: Place<'c>,
-    pub(super) base_dir: &'c Path,
+    pub(super) folder: Folder<'c>,
     pub(super) warnings: &'c mut Warnings,
     pub(super) description: Description,
     /// The shape that first used each mesh file.
@@ -49,10 +50,10 @@ pub(super) struct Context<'c> {
 }
 
 impl<'c> Context<'c> {
-    pub(super) fn new(place: Place<'c>, base_dir: &'c Path, warnings: &'c mut Warnings) -> Self {
+    pub(super) fn new(place: Place<'c>, folder: Folder<'c>, warnings: &'c mut Warnings) -> Self {
         Self {
             place,
-            base_dir,
+            folder,
             warnings,
             description: Description { samples: 1, ..Description::default() },
             meshes: BTreeMap::new(),
@@ -73,12 +74,16 @@ impl<'c> Context<'c> {
 
     /// The mesh of a file, for the shape that is added next; `range` is where the file is named.
     pub(super) fn mesh(&mut self, file: &str, range: &Range<usize>) -> Result<Mesh, Diagnostic> {
-        let path = self.base_dir.join(file);
+        let path = self.folder.base.join(file);
         let known = self.meshes.get(&path).map(|shape| &self.description.shapes[*shape].geometry);
         let mesh = if let Some(Geometry::Mesh(mesh)) = known {
             mesh.clone()
         } else {
-            let read = obj::load_obj(&path).map_err(|e| self.place_if_unplaced(e, range))?;
+            let read = match self.folder.embedded(file) {
+                Some(text) => obj::read_obj(text.as_bytes(), file),
+                None => obj::load_obj(&path),
+            };
+            let read = read.map_err(|e| self.place_if_unplaced(e, range))?;
             read.warnings.into_iter().for_each(|w| self.warnings.push(w));
             self.meshes.insert(path, self.description.shapes.len());
             read.mesh
@@ -93,7 +98,7 @@ impl<'c> Context<'c> {
 
     /// The image of a file; `range` is where it is named.
     pub(super) fn image(&mut self, file: &str, range: &Range<usize>) -> Result<ImageId, Diagnostic> {
-        let path = self.base_dir.join(file);
+        let path = self.folder.base.join(file);
         if let Some(id) = self.images.get(&path) {
             return Ok(*id);
         }

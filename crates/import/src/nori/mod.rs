@@ -21,11 +21,10 @@ mod transform;
 mod tree;
 mod value;
 
-use std::path::Path;
-
 use caustica_scene::Diagnostic;
 
 use crate::Loaded;
+use crate::files::Folder;
 use crate::source::Source;
 use class::Class;
 use context::Warnings;
@@ -34,15 +33,15 @@ use tree::Place;
 pub use test::{SceneTest, TestKind};
 
 /// Reads the scene and the tests of a file.
-pub(crate) fn read(source: &Source, base_dir: &Path) -> Result<Loaded, Diagnostic> {
+pub(crate) fn read(source: &Source, folder: Folder<'_>) -> Result<Loaded, Diagnostic> {
     let document = document::parse(source)?;
     let place = Place { source };
     let root = document.root_element();
     let object = tree::object(place, root, 0)?;
     let mut warnings = Warnings::default();
     let (scene, tests) = match object.class {
-        Class::Scene => scene::read_file(&object, place, base_dir, &mut warnings)?,
-        Class::Test => (None, vec![test::read(&object, place, base_dir, &mut warnings)?]),
+        Class::Scene => scene::read_file(&object, place, folder, &mut warnings)?,
+        Class::Test => (None, vec![test::read(&object, place, folder, &mut warnings)?]),
         other => {
             let message =
                 format!("a scene file must start with <scene> or <test>, not with <{}>", other.tag());

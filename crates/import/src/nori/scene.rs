@@ -1,8 +1,8 @@
 //! `<scene>`.
 
-use std::path::Path;
-
 use caustica_scene::{Description, Diagnostic};
+
+use crate::files::Folder;
 
 use super::class::Class;
 use super::context::{Context, Warnings};
@@ -32,16 +32,16 @@ const OTHER_SAMPLERS: &[&str] = &[
 pub(super) fn read_file(
     object: &Object,
     place: Place,
-    base_dir: &Path,
+    folder: Folder<'_>,
     warnings: &mut Warnings,
 ) -> Result<(Option<Description>, Vec<SceneTest>), Diagnostic> {
     let mut tests = Vec::new();
     for child in object.children.iter().filter(|c| c.class == Class::Test) {
-        tests.push(test::read(child, place, base_dir, warnings)?);
+        tests.push(test::read(child, place, folder, warnings)?);
     }
     // A scene that holds nothing but tests is only their wrapping.
     let only_tests = !tests.is_empty() && tests.len() == object.children.len();
-    let mut context = Context::new(place, base_dir, warnings);
+    let mut context = Context::new(place, folder, warnings);
     let mut fields = Fields::new(object, place);
     fields.children(Class::Test);
     if only_tests {
@@ -56,10 +56,10 @@ pub(super) fn read_file(
 pub(super) fn read(
     object: &Object,
     place: Place,
-    base_dir: &Path,
+    folder: Folder<'_>,
     warnings: &mut Warnings,
 ) -> Result<Description, Diagnostic> {
-    let mut context = Context::new(place, base_dir, warnings);
+    let mut context = Context::new(place, folder, warnings);
     read_fields(Fields::new(object, place), &mut context)?;
     Ok(context.description)
 }

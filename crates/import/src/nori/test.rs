@@ -1,8 +1,8 @@
 //! `<test>`: the statistical tests that a scene file can carry.
 
-use std::path::Path;
-
 use caustica_scene::{Description, Diagnostic, Origin};
+
+use crate::files::Folder;
 
 use super::class::Class;
 use super::context::{Context, Warnings};
@@ -63,15 +63,15 @@ const MOST_SAMPLES: i64 = 1 << 40;
 pub(super) fn read(
     object: &Object,
     place: Place,
-    base_dir: &Path,
+    folder: Folder<'_>,
     warnings: &mut Warnings,
 ) -> Result<SceneTest, Diagnostic> {
     let mut fields = Fields::new(object, place);
     let mut scenes = Vec::new();
     for child in fields.children(Class::Scene) {
-        scenes.push(scene::read(child, place, base_dir, warnings)?);
+        scenes.push(scene::read(child, place, folder, warnings)?);
     }
-    let mut cx = Context::new(place, base_dir, warnings);
+    let mut cx = Context::new(place, folder, warnings);
     for child in fields.children(Class::Bsdf) {
         bsdf::read(child, &mut cx)?;
     }

@@ -95,7 +95,8 @@ struct Node {
 struct Child(u32);
 
 impl Child {
-    const NONE: Self = Self(u32::MAX);
+    /// A leaf with nothing in it.
+    const NONE: Self = Self(Self::LEAF);
     const LEAF: u32 = 1 << 31;
     const SPHERES: u32 = 1 << 30;
     const COUNT_SHIFT: u32 = 27;

@@ -1,50 +1,58 @@
-use caustica_math::Vec3;
 use wide::f32x4;
 
 use super::triangle::ShearedRay;
-use super::{Bvh, Child, Hit, Node, Ray};
+#[cfg(doc)]
+use super::Node;
+use super::{Bvh, Child, Hit, Ray};
 
 /// Enough for the depth that the builder allows: three siblings wait at each level.
 pub(super) const STACK: usize = 3 * super::build::MAX_DEPTH + 4;
 
 /// A ray made ready for box tests.
-struct SlabRay {
+pub(super) struct SlabRay {
     inverse: [f32x4; 3],
-    origin: [f32x4; 3],
+    /// For each axis where the ray starts, for planes that are entered first and for those that are left.
+    origins: [[f32x4; 2]; 3],
     /// For each axis the row of [`Node::bounds`] that is entered first.
     near: [usize; 3],
 }
 
-/// The far planes are pushed out by this factor, which covers the rounding of the slab test, so that no
-/// box is missed whose content is hit (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013).
-const FAR: f32 = 1.0 + 4.0 * f32::EPSILON;
+/// The far planes are pushed out by this factor, which covers the rounding of the slab test and of the
+/// triangle test, so that no box is missed whose content is hit (Ize, "Robust BVH Ray Traversal", JCGT
+/// 2(2), 2013).
+const FAR: f32 = 1.0 + 8.0 * f32::EPSILON;
 
 impl SlabRay {
     #[inline]
     fn new(ray: &Ray) -> Self {
-        // A zero component would make 0·∞ of a plane through the origin.
-        let inverse = |d: f32| 1.0 / if d.abs() < 1e-18 { 1e-18_f32.copysign(d) } else { d };
         let (d, o) = (ray.direction, ray.origin);
-        let i = Vec3::new(inverse(d.x), inverse(d.y), inverse(d.z));
-        let near = |axis: usize| if i[axis] < 0.0 { axis + 3 } else { axis };
-        Self {
-            inverse: [f32x4::splat(i.x), f32x4::splat(i.y), f32x4::splat(i.z)],
-            origin: [f32x4::splat(o.x), f32x4::splat(o.y), f32x4::splat(o.z)],
-            near: [near(0), near(1), near(2)],
-        }
+        let axis = |i: usize| {
+            let (d, o) = (d[i], o[i]);
+            // A zero component would make 0·∞ of a plane through the origin.
+            let parallel = d.abs() < f32::MIN_POSITIVE;
+            let inverse = 1.0 / if parallel { f32::MIN_POSITIVE.copysign(d) } else { d };
+            // A ray in the plane in which a box ends does not leave the box at once.
+            let inset = if parallel { (o.abs() * f32::EPSILON).max(1e-20).copysign(d) } else { 0.0 };
+            (f32x4::splat(inverse), [f32x4::splat(o), f32x4::splat(o - inset)], if inverse < 0.0 { i + 3 } else { i })
+        };
+        let [x, y, z] = [axis(0), axis(1), axis(2)];
+        Self { inverse: [x.0, y.0, z.0], origins: [x.1, y.1, z.1], near: [x.2, y.2, z.2] }
     }
 
-    /// Which of the four children the ray meets before `t_max`, and where it enters them.
+    /// Which of four boxes, given by the rows of [`Node::bounds`], the ray meets before `t_max`, and where it
+    /// enters them.
+    ///
+    /// Differences and products are monotonic even when rounded: a box around a box that is met is met, and
+    /// entered no later.
     #[inline(always)]
-    fn enter(&self, node: &Node, t_max: f32) -> (u32, f32x4) {
-        let plane = |row: usize, axis: usize| {
-            (f32x4::new(node.bounds[row]) - self.origin[axis]) * self.inverse[axis]
+    pub(super) fn enter(&self, row: impl Fn(usize) -> f32x4, t_max: f32) -> (u32, f32x4) {
+        let near = |axis: usize| (row(self.near[axis]) - self.origins[axis][0]) * self.inverse[axis];
+        let far = |axis: usize| {
+            let opposite = if self.near[axis] >= 3 { axis } else { axis + 3 };
+            (row(opposite) - self.origins[axis][1]) * self.inverse[axis]
         };
-        let far = |axis: usize| if self.near[axis] >= 3 { axis } else { axis + 3 };
-        let t_near = plane(self.near[0], 0)
-            .fast_max(plane(self.near[1], 1))
-            .fast_max(plane(self.near[2], 2).fast_max(f32x4::ZERO));
-        let t_far = plane(far(0), 0).fast_min(plane(far(1), 1)).fast_min(plane(far(2), 2));
+        let t_near = near(0).fast_max(near(1)).fast_max(near(2).fast_max(f32x4::ZERO));
+        let t_far = far(0).fast_min(far(1)).fast_min(far(2));
         let hit = t_near.simd_le((t_far * f32x4::splat(FAR)).fast_min(f32x4::splat(t_max)));
         (hit.to_bitmask(), t_near)
     }
@@ -52,7 +60,7 @@ impl SlabRay {
 
 pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let slab = SlabRay::new(ray);
-    let sheared = ShearedRay::new(ray);
+    let sheared = ShearedRay::new(ray, &slab);
     let mut best: Option<Hit> = None;
     let mut stack = [(Child::NONE, 0.0_f32); STACK];
     let mut depth = 0;
@@ -66,7 +74,7 @@ pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
         } else {
             let node = &bvh.nodes[current.0 as usize];
             let limit = best.map_or(ray.t_max, |b| b.t);
-            let (mut mask, t_near) = slab.enter(node, limit);
+            let (mut mask, t_near) = slab.enter(|row| f32x4::new(node.bounds[row]), limit);
             if mask != 0 {
                 let t_near = t_near.to_array();
                 let first = mask.trailing_zeros() as usize;
@@ -108,7 +116,7 @@ pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
 }
 
 #[inline]
-fn test_leaf(bvh: &Bvh, leaf: Child, ray: &Ray, sheared: &ShearedRay, best: &mut Option<Hit>) {
+fn test_leaf(bvh: &Bvh, leaf: Child, ray: &Ray, sheared: &ShearedRay<'_>, best: &mut Option<Hit>) {
     if leaf.holds_spheres() {
         for (sphere, primitive) in &bvh.spheres[leaf.range()] {
             let limited = Ray { t_max: best.map_or(ray.t_max, |b| b.t), ..*ray };
@@ -127,7 +135,7 @@ fn test_leaf(bvh: &Bvh, leaf: Child, ray: &Ray, sheared: &ShearedRay, best: &mut
 
 pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
     let slab = SlabRay::new(ray);
-    let sheared = ShearedRay::new(ray);
+    let sheared = ShearedRay::new(ray, &slab);
     let mut stack = [Child::NONE; STACK];
     let mut depth = 0;
     let mut current = Child::node(0);
@@ -146,7 +154,7 @@ pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
             }
         } else {
             let node = &bvh.nodes[current.0 as usize];
-            let (mut mask, _) = slab.enter(node, ray.t_max);
+            let (mut mask, _) = slab.enter(|row| f32x4::new(node.bounds[row]), ray.t_max);
             while mask != 0 {
                 stack[depth] = node.children[mask.trailing_zeros() as usize];
                 depth += 1;

@@ -1,6 +1,7 @@
 use caustica_math::Vec3;
 use wide::f32x4;
 
+use super::traverse::SlabRay;
 use super::{Hit, Ray};
 
 /// Up to four triangles, corner by corner and axis by axis. Unused lanes repeat the first triangle with
@@ -16,16 +17,17 @@ pub(super) struct TriangleBlock {
 /// the shear that makes it the z axis.
 ///
 /// Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ShearedRay {
+#[derive(Clone, Copy)]
+pub(super) struct ShearedRay<'a> {
     axes: [usize; 3],
     shear: [f32; 3],
     origin: Vec3,
+    slab: &'a SlabRay,
 }
 
-impl ShearedRay {
+impl<'a> ShearedRay<'a> {
     #[inline]
-    pub(super) fn new(ray: &Ray) -> Self {
+    pub(super) fn new(ray: &Ray, slab: &'a SlabRay) -> Self {
         let d = ray.direction;
         let a = d.abs();
         let z = if a.x > a.y { if a.x > a.z { 0 } else { 2 } } else if a.y > a.z { 1 } else { 2 };
@@ -34,7 +36,8 @@ impl ShearedRay {
             std::mem::swap(&mut x, &mut y);
         }
         let inverse = 1.0 / d[z];
-        Self { axes: [x, y, z], shear: [d[x] * inverse, d[y] * inverse, inverse], origin: ray.origin }
+        let shear = [d[x] * inverse, d[y] * inverse, inverse];
+        Self { axes: [x, y, z], shear, origin: ray.origin, slab }
     }
 }
 
@@ -64,7 +67,7 @@ impl TriangleBlock {
     /// Products and differences are not fused, so the value of an edge shared by two triangles is exactly
     /// the negative of the other's: no ray passes between them.
     #[inline(always)]
-    fn test(&self, ray: &ShearedRay, t_max: f32) -> (u32, f32x4, [f32x4; 2], f32x4) {
+    fn test(&self, ray: &ShearedRay<'_>, t_max: f32) -> (u32, f32x4, [f32x4; 2], f32x4) {
         let [kx, ky, kz] = ray.axes;
         let (sx, sy, sz) =
             (f32x4::splat(ray.shear[0]), f32x4::splat(ray.shear[1]), f32x4::splat(ray.shear[2]));
@@ -91,13 +94,31 @@ impl TriangleBlock {
         }
         let det = u + v + w;
         let t = sz * (u * az + v * bz + w * cz) / det;
-        let hit = inside & t.simd_gt(zero) & t.simd_le(f32x4::splat(t_max));
-        (hit.to_bitmask(), t, [v, w], det)
+        let front = t.simd_gt(zero);
+        let (mask, t) = self.clip(ray, t, t_max);
+        ((inside & front).to_bitmask() & mask, t, [v, w], det)
+    }
+
+    /// The lanes whose triangle's own box the ray meets, and which hit before `t_max`; and their distances,
+    /// but none before that box.
+    ///
+    /// Distances are averages of the corners' with weights that are rounded, and hits can lie just beyond an
+    /// edge. By leaving out what its own box would hide, what is hit does not depend on the boxes in which
+    /// the tree keeps it.
+    #[inline]
+    fn clip(&self, ray: &ShearedRay<'_>, t: f32x4, t_max: f32) -> (u32, f32x4) {
+        let row = |row: usize| {
+            let [a, b, c] = [0, 1, 2].map(|corner: usize| f32x4::new(self.corners[corner][row % 3]));
+            if row < 3 { a.fast_min(b).fast_min(c) } else { a.fast_max(b).fast_max(c) }
+        };
+        let (mask, entry) = ray.slab.enter(row, t_max);
+        let t = t.fast_max(entry);
+        (t.simd_le(f32x4::splat(t_max)).to_bitmask() & mask, t)
     }
 
     /// Replaces `best` if a triangle is hit before it, or at the same distance by a lower id.
     #[inline]
-    pub(super) fn closest(&self, ray: &ShearedRay, t_max: f32, best: &mut Option<Hit>) {
+    pub(super) fn closest(&self, ray: &ShearedRay<'_>, t_max: f32, best: &mut Option<Hit>) {
         let limit = best.map_or(t_max, |b| b.t);
         let (mut mask, t, [v, w], det) = self.test(ray, limit);
         if mask == 0 {
@@ -118,7 +139,7 @@ impl TriangleBlock {
 
     /// Whether any triangle is hit.
     #[inline]
-    pub(super) fn any(&self, ray: &ShearedRay, t_max: f32) -> bool {
+    pub(super) fn any(&self, ray: &ShearedRay<'_>, t_max: f32) -> bool {
         // Unused lanes repeat the first triangle, so that they need no mask here.
         self.test(ray, t_max).0 != 0
     }

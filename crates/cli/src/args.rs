@@ -1,0 +1,288 @@
+use std::path::PathBuf;
+use std::time::Duration;
+
+use caustica::description::Crop;
+use caustica::film::ToneMap;
+use caustica::session::INTEGRATOR_NAMES;
+use caustica::transport::{Heuristic, StrategySet};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// A bidirectional path tracer for scenes whose light is hard to find.
+#[derive(Debug, Parser)]
+#[command(name = "caustica", version, after_help = EXIT_CODES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    all went well (also after a first Ctrl-C, which keeps the passes done so far)
+  1    a test of `caustica test` failed
+  2    the arguments are wrong
+  3    the scene or film file cannot be read, or the scene cannot be rendered
+  4    the output cannot be written
+  5    the machine cannot do it: not enough memory, or no thread could be started
+  130  stopped at once by a second Ctrl-C";
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a scene to an OpenEXR file and a PNG
+    Render(Render),
+    /// Make a picture from a rendered OpenEXR file, with or without its light image
+    Develop(Develop),
+    /// Tell what a scene file holds
+    Info(Info),
+    /// Run the statistical tests (`ttest`, `chi2test`) that a scene file carries
+    Test(Test),
+}
+
+impl Arguments {
+    /// Whether failures are to be told in JSON.
+    pub fn json(&self) -> bool {
+        match &self.command {
+            Command::Render(a) => a.json,
+            Command::Info(a) => a.json,
+            Command::Test(a) => a.json,
+            Command::Develop(_) => false,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct Render {
+    /// Nori scene file; without it, the built-in scene of caustics is rendered
+    pub scene: Option<PathBuf>,
+    /// Output file; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
+    #[arg(long, value_parser = parse_duration)]
+    pub time: Option<Duration>,
+    #[command(flatten)]
+    pub method: Method,
+    /// Size of the picture, such as 640x480 [default: as the scene says]
+    #[arg(long, value_parser = parse_resolution)]
+    pub resolution: Option<(u32, u32)>,
+    /// Render only this window: X,Y,WIDTH,HEIGHT in pixels from the upper left
+    #[arg(long, value_parser = parse_crop)]
+    pub crop: Option<Crop>,
+    /// Worker threads; the picture does not depend on it [default: all]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// What becomes of the light image, which holds what light paths splat: most caustics
+    #[arg(long, value_enum, default_value_t = LightImageChoice::On)]
+    pub light_image: LightImageChoice,
+    #[command(flatten)]
+    pub look: Look,
+    /// Print one sample, strategy by strategy, instead of rendering: X,Y,SAMPLE
+    #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
+    pub replay: Option<([u32; 2], u32)>,
+    /// No progress bar and no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print the result and all diagnostics as JSON on the standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How light is found.
+#[derive(Debug, Args)]
+pub struct Method {
+    /// Integrator [default: as the scene says]
+    #[arg(long, value_parser = integrator_names(), long_help = integrator_help())]
+    pub integrator: Option<String>,
+    /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub max_depth: Option<u32>,
+    /// Bounces before Russian roulette begins
+    #[arg(long, default_value_t = 3)]
+    pub roulette_depth: u32,
+    /// Seed of the sample streams
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Strategies (s, t) of bdpt, with s light and t camera vertices: `s=0`, `t>=2`, `2,3`, `s>=2&t>=2`,
+    /// `s=0;s=1`, `all`. What is left stays unbiased where it reaches
+    #[arg(long, default_value = "all")]
+    pub strategies: StrategySet,
+    /// How strategies are weighed
+    #[arg(long, value_enum, default_value_t = HeuristicChoice::Balance)]
+    pub heuristic: HeuristicChoice,
+}
+
+/// How a PNG looks.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Look {
+    /// Exposure of the PNG in stops; 1 is twice as bright
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
+    pub exposure: f32,
+    /// Tone map of the PNG: srgb (clipped) or agx (filmic)
+    #[arg(long, default_value_t = ToneMap::Srgb)]
+    pub tone_map: ToneMap,
+}
+
+#[derive(Debug, Args)]
+pub struct Develop {
+    /// OpenEXR file written by `caustica render`
+    pub film: PathBuf,
+    /// Output file: .png, or .exr to keep all layers with another `combined` [default: FILM.png]
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+    /// What becomes of the light image
+    #[arg(long, value_enum, default_value_t = LightImageChoice::On)]
+    pub light_image: LightImageChoice,
+    #[command(flatten)]
+    pub look: Look,
+}
+
+#[derive(Debug, Args)]
+pub struct Info {
+    /// Nori scene file; without it, the built-in scene
+    pub scene: Option<PathBuf>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Test {
+    /// Nori scene file with tests
+    pub scene: PathBuf,
+    /// Seed of the sample streams
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What becomes of the light image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LightImageChoice {
+    /// Added to the eye image
+    On,
+    /// Left out
+    Off,
+    /// Shown alone
+    Only,
+    /// Asked at the end
+    Ask,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum HeuristicChoice {
+    /// By density
+    Balance,
+    /// By density squared
+    Power,
+}
+
+impl From<HeuristicChoice> for Heuristic {
+    fn from(choice: HeuristicChoice) -> Self {
+        match choice {
+            HeuristicChoice::Balance => Self::Balance,
+            HeuristicChoice::Power => Self::Power,
+        }
+    }
+}
+
+/// Other names that scene files use are accepted too.
+const INTEGRATOR_ALIASES: [&str; 3] = ["path_mis", "path_mats", "direct_mis"];
+
+fn integrator_names() -> clap::builder::PossibleValuesParser {
+    let names = INTEGRATOR_NAMES.iter().map(|(name, _)| *name).chain(INTEGRATOR_ALIASES);
+    clap::builder::PossibleValuesParser::new(names.collect::<Vec<_>>())
+}
+
+fn integrator_help() -> String {
+    let mut help = "Integrator [default: as the scene says]".to_owned();
+    for (name, what) in INTEGRATOR_NAMES {
+        help.push_str(&format!("\n  {name:<12} {what}"));
+    }
+    help
+}
+
+fn parse_duration(text: &str) -> Result<Duration, String> {
+    let unit_start = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(unit_start);
+    let factor = match unit {
+        "" | "s" => 1.0,
+        "ms" => 1e-3,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err("use a number with ms, s, m or h, such as 90s or 5m".into()),
+    };
+    let seconds = number.trim().parse::<f64>().ok().map(|n| n * factor);
+    match seconds {
+        Some(s) if s > 0.0 && s < 1e9 => Ok(Duration::from_secs_f64(s)),
+        _ => Err("use a positive number with ms, s, m or h, such as 90s or 5m".into()),
+    }
+}
+
+/// The longest side of a picture; what is larger is a typing error.
+const LONGEST_SIDE: u32 = 65_536;
+
+fn parse_resolution(text: &str) -> Result<(u32, u32), String> {
+    let side = |t: &str| t.trim().parse().ok().filter(|n| (1..=LONGEST_SIDE).contains(n));
+    text.split_once(['x', 'X', '×'])
+        .and_then(|(w, h)| Some((side(w)?, side(h)?)))
+        .ok_or_else(|| format!("use WIDTHxHEIGHT with sides from 1 to {LONGEST_SIDE}, such as 640x480"))
+}
+
+fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
+    let parts: Vec<u32> = text.split(',').map(|p| p.trim().parse().ok()).collect::<Option<_>>()?;
+    parts.try_into().ok()
+}
+
+fn parse_crop(text: &str) -> Result<Crop, String> {
+    match numbers(text) {
+        Some([x, y, width, height]) if width > 0 && height > 0 => Ok(Crop { x, y, width, height }),
+        _ => Err("use X,Y,WIDTH,HEIGHT in pixels, such as 100,50,64,64".into()),
+    }
+}
+
+fn parse_replay(text: &str) -> Result<([u32; 2], u32), String> {
+    match numbers(text) {
+        Some([x, y, sample]) => Ok(([x, y], sample)),
+        None => Err("use X,Y,SAMPLE, such as 320,240,0".into()),
+    }
+}
+
+fn parse_exposure(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
+        _ => Err("use a number of stops between -100 and 100".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn durations_have_units() {
+        assert_eq!(parse_duration("90"), Ok(Duration::from_secs(90)));
+        assert_eq!(parse_duration("1.5m"), Ok(Duration::from_secs(90)));
+        assert_eq!(parse_duration("250ms"), Ok(Duration::from_millis(250)));
+        assert!(parse_duration("0s").is_err() && parse_duration("-1").is_err());
+        assert!(parse_duration("5 parsecs").is_err() && parse_duration("nan").is_err());
+    }
+
+    #[test]
+    fn sizes_and_windows() {
+        assert_eq!(parse_resolution("640x480"), Ok((640, 480)));
+        assert!(parse_resolution("640").is_err() && parse_resolution("0x5").is_err());
+        assert!(parse_resolution("99999999x99999999").is_err());
+        assert_eq!(parse_crop("1,2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
+        assert!(parse_crop("1,2,0,4").is_err() && parse_crop("1,2,3").is_err());
+    }
+}

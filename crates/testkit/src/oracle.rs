@@ -1,0 +1,427 @@
+//! What a path's contribution and weight ought to be, worked out from the path integral alone.
+//!
+//! Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997, chapters 8 and 10. Number the
+//! vertices x₀ (lamp) to x_k (camera). The path's measured contribution is
+//!
+//! f(x) = Lₑ(x₀→x₁) · ∏ⱼ G(xⱼ, xⱼ₊₁) · ∏ⱼ f(xⱼ)·|cos_s|/|cos_g| · Wₑ(x_{k−1}→x_k)
+//!
+//! with scattering taken as light travels, both cosines on the light's side, and geometric normals in G. A vertex
+//! at infinity is measured by direction, so that its edge has neither 1/d² nor its cosine. The strategy that
+//! takes i vertices from the light walk makes the path with a density pᵢ(x), in the product of the vertices' own
+//! measures, and tries nᵢ times a pixel: once, or as often as the window has pixels if i = k. Its unweighted
+//! estimate must be f/(nᵢ·pᵢ), and its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
+//!
+//! The point on the lens has the same density in every strategy and is left out of both f and pᵢ. So are
+//! Dirac distributions: each smooth surface puts one δ(to_light) into f and into every density, and what stands
+//! here is its coefficient.
+//!
+//! Everything is computed from positions in `f64`, from the evaluation functions of BSDFs, lamps and cameras.
+//! No code is shared with the transport crate, nor with the smooth surfaces.
+
+use caustica_math::{Spectrum, Vec2, Vec3, Wavelengths, warp};
+use caustica_scene::Scene;
+use caustica_scene::bsdf::{Bsdf, Dielectric};
+use caustica_scene::camera::{CameraLink, CameraPoint};
+use caustica_scene::light::{Anchor, LightPoint};
+use caustica_transport::vertex::Vertex;
+use caustica_transport::{Contribution, Heuristic, Strategy, StrategySet};
+
+type Vector = [f64; 3];
+
+fn wide(v: Vec3) -> Vector {
+    [v.x.into(), v.y.into(), v.z.into()]
+}
+
+fn narrow(v: Vector) -> Vec3 {
+    Vec3::new(v[0] as f32, v[1] as f32, v[2] as f32)
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn plus(a: Vector, b: Vector, k: f64) -> Vector {
+    [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]]
+}
+
+fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// The lanes of a spectrum that carry light.
+pub fn lanes(s: Spectrum) -> Vector {
+    [s[0].into(), s[1].into(), s[2].into()]
+}
+
+/// One vertex of the full path.
+#[derive(Clone, Copy)]
+struct Node<'a> {
+    /// Position or, at infinity, the direction towards it.
+    at: Vector,
+    infinite: bool,
+    /// Geometric normal, on a surface.
+    normal: Option<Vector>,
+    /// What scatters there; nothing at the two ends.
+    surface: Option<&'a Vertex>,
+}
+
+impl Node<'_> {
+    /// The unit direction to another vertex, and 1/d² (one where a vertex is at infinity).
+    fn to(&self, other: &Self) -> (Vector, f64) {
+        if other.infinite {
+            return (other.at, 1.0);
+        }
+        if self.infinite {
+            return (self.at.map(|c| -c), 1.0);
+        }
+        let d = plus(other.at, self.at, -1.0);
+        let squared = dot(d, d);
+        (d.map(|c| c / squared.sqrt()), 1.0 / squared)
+    }
+
+    /// |cos| to the geometric normal; one where there is none.
+    fn cos(&self, direction: Vector) -> f64 {
+        self.normal.map_or(1.0, |n| dot(n, direction).abs())
+    }
+}
+
+/// Scattering at a vertex: for a smooth surface coefficients of δ(to_light).
+struct Scattering {
+    /// f·|cos_s|/|cos_g| with the cosines on the light's side.
+    value: Vector,
+    to_light_pdf: f64,
+    to_camera_pdf: f64,
+    smooth: bool,
+    uncertainty: f64,
+}
+
+/// The edge from xⱼ to xⱼ₊₁.
+struct Edge {
+    falloff: f64,
+    /// |cos| at the end nearer to the lamp, and at the other.
+    light_cos: f64,
+    camera_cos: f64,
+    /// The error of its direction by rounding, and how much that and its length's matter to all but scattering.
+    blur: f64,
+    uncertainty: f64,
+}
+
+impl Edge {
+    fn new(a: &Node<'_>, b: &Node<'_>) -> Self {
+        let (direction, falloff) = a.to(b);
+        let (light_cos, camera_cos) = (a.cos(direction), b.cos(direction));
+        let size = a.at.iter().chain(&b.at).fold(0.0_f64, |m, c| m.max(c.abs()));
+        // Rays start off their surfaces, by about 1e-6 of the coordinates.
+        let blur = 2e-7 + 5e-7 * size * falloff.sqrt();
+        Self {
+            falloff,
+            light_cos,
+            camera_cos,
+            blur,
+            uncertainty: blur * (2.0 + 1.0 / light_cos + 1.0 / camera_cos),
+        }
+    }
+}
+
+/// What the oracle says about a path.
+#[derive(Clone, Debug)]
+pub struct Judgement {
+    /// f(x), lane by lane.
+    pub measured: [f64; 3],
+    /// nᵢ·pᵢ(x) for i = 0 to k: a strategy's density times how often a pass tries it per pixel of the window.
+    pub densities: Vec<f64>,
+    /// About how large a relative error rounding to `f32` may cause.
+    pub uncertainty: f64,
+}
+
+impl Judgement {
+    /// The unweighted estimate that strategy ought to make: f/(n·p).
+    pub fn estimate(&self, strategy: Strategy) -> [f64; 3] {
+        self.measured.map(|f| f / self.densities[strategy.s as usize])
+    }
+
+    /// The weight of that strategy among those of the set.
+    pub fn weight(&self, strategy: Strategy, set: &StrategySet, heuristic: Heuristic) -> f64 {
+        let power = |i: usize| match heuristic {
+            Heuristic::Balance => self.densities[i],
+            Heuristic::Power => self.densities[i] * self.densities[i],
+        };
+        let vertices = self.densities.len() as u32;
+        let sum: f64 = (0..vertices)
+            .filter(|s| set.contains(Strategy { s: *s, t: vertices - s }))
+            .map(|s| power(s as usize))
+            .sum();
+        power(strategy.s as usize) / sum
+    }
+}
+
+/// Judges a contribution found in that scene.
+///
+/// # Errors
+/// If it is no path at all: vertices are missing, a mirror does not mirror, the film position is elsewhere.
+pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
+    let nodes = nodes(c)?;
+    let k = nodes.len() - 1;
+    let lights = scene.lights(Wavelengths::Rgb);
+    let lamp = &c.path.lamp;
+    let emitted = nodes[0].to(&nodes[1]).0;
+    let radiance = lanes(lights.radiance(lamp, narrow(emitted)));
+    if nodes[0].infinite && nodes[1].infinite {
+        // A camera of parallel rays looks at the sky: a density in both measures at once, and no other way.
+        let densities = vec![1.0, 0.0];
+        return Ok(Judgement { measured: radiance, densities, uncertainty: 0.0 });
+    }
+    let edges: Vec<Edge> = nodes.windows(2).map(|n| Edge::new(&n[0], &n[1])).collect();
+    let scatterings: Vec<Option<Scattering>> = (0..=k)
+        .map(|j| {
+            let scatter = |v| {
+                let blur = edges[j - 1].blur + edges[j].blur;
+                scatter(v, [nodes[j].to(&nodes[j - 1]).0, nodes[j].to(&nodes[j + 1]).0], blur)
+            };
+            nodes[j].surface.map(scatter).transpose()
+        })
+        .collect::<Result<_, _>>()?;
+    let film_density = film_density(scene, c, &nodes[k - 1])?;
+
+    let mut measured = radiance.map(|r| r * film_density);
+    for e in &edges {
+        measured = measured.map(|m| m * e.falloff * e.light_cos * e.camera_cos);
+    }
+    for s in scatterings.iter().flatten() {
+        measured = [0, 1, 2].map(|lane| measured[lane] * s.value[lane]);
+    }
+    let emission = lights.emission_pdf(lamp, narrow(emitted));
+    let starts = Starts {
+        emission: [emission.point.get().into(), emission.direction.get().into()],
+        next_event: lights.towards_pdf(narrow(nodes[1].at), lamp).get().into(),
+        camera: film_density,
+        can_be_hit: !lights.lights.get(lamp.light).is_delta(),
+    };
+    let window = scene.film.window();
+    let light_paths = f64::from(window.width) * f64::from(window.height);
+    let mut densities: Vec<f64> = (0..=k).map(|i| density(i, &scatterings, &edges, &starts)).collect();
+    densities[k] *= light_paths;
+    let uncertainty = edges.iter().map(|e| e.uncertainty).sum::<f64>()
+        + scatterings.iter().flatten().map(|s| s.uncertainty).sum::<f64>();
+    Ok(Judgement { measured, densities, uncertainty })
+}
+
+/// Densities at the two ends of a path.
+struct Starts {
+    /// Of the point, and of the direction (at infinity: per area across it).
+    emission: [f64; 2],
+    next_event: f64,
+    /// Film area in pixels per solid angle or area.
+    camera: f64,
+    can_be_hit: bool,
+}
+
+/// pᵢ(x): the light walk makes x₀ … xᵢ₋₁ and the camera walk x_k … xᵢ, each from the one before it.
+fn density(i: usize, scatterings: &[Option<Scattering>], edges: &[Edge], starts: &Starts) -> f64 {
+    let k = edges.len();
+    let smooth = |j: usize| scatterings[j].as_ref().is_some_and(|s| s.smooth);
+    if (i == 0 && !starts.can_be_hit) || (i > 0 && (smooth(i - 1) || smooth(i))) {
+        return 0.0;
+    }
+    // Only where the eye path has a vertex to look for lamps from are they looked for.
+    let mut p = match i {
+        0 => 1.0,
+        1 if k > 1 => starts.next_event,
+        _ => starts.emission[0],
+    };
+    for j in 1..i {
+        let direction = match &scatterings[j - 1] {
+            Some(s) => s.to_camera_pdf,
+            None => starts.emission[1],
+        };
+        p *= direction * edges[j - 1].falloff * edges[j - 1].camera_cos;
+    }
+    for j in i..k {
+        let direction = match &scatterings[j + 1] {
+            Some(s) => s.to_light_pdf,
+            None => starts.camera,
+        };
+        p *= direction * edges[j].falloff * edges[j].light_cos;
+    }
+    p
+}
+
+/// The path as one list from the lamp to the camera.
+fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
+    let (s, t) = (c.strategy.s as usize, c.strategy.t as usize);
+    let LightPoint { anchor, at, normal, .. } = c.path.lamp;
+    let infinite = anchor == Anchor::Infinite;
+    let normal = (anchor == Anchor::Surface).then(|| wide(normal));
+    let (light, mut eye) = (c.path.light, c.path.eye);
+    if s == 0 && !infinite {
+        let (last, rest) = eye.split_last().ok_or("no vertex on the lamp")?;
+        if last.point.position != at || Some(wide(last.point.normal)) != normal {
+            return Err("the last eye vertex is not the point on the lamp".into());
+        }
+        eye = rest;
+    }
+    let inner = s + t - 2;
+    if light.len() + eye.len() != inner || light.len() != s.saturating_sub(1) {
+        return Err(format!("{} light and {} eye vertices", light.len(), eye.len()));
+    }
+    let joined = |walked: &[Vertex], joins: bool| walked.len() - usize::from(joins && !walked.is_empty());
+    for v in light[..joined(light, true)].iter().chain(&eye[..joined(eye, s > 0)]) {
+        if v.delta != v.bsdf.is_delta() {
+            return Err("a vertex's Dirac flag is wrong".into());
+        }
+    }
+    let surface = |v: &'a Vertex| Node {
+        at: wide(v.point.position),
+        infinite: false,
+        normal: Some(wide(v.point.normal)),
+        surface: Some(v),
+    };
+    let CameraPoint { at: eye_at, infinite: parallel } = c.path.camera;
+    let mut nodes = vec![Node { at: wide(at), infinite, normal, surface: None }];
+    nodes.extend(light.iter().map(surface));
+    nodes.extend(eye.iter().rev().map(surface));
+    nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, surface: None });
+    Ok(nodes)
+}
+
+fn to_local(v: &Vertex, d: Vector) -> Vector {
+    let f = v.point.frame;
+    [dot(d, wide(f.x)), dot(d, wide(f.y)), dot(d, wide(f.z))]
+}
+
+/// Scattering at `v` from the direction `to_light` into `to_camera`, which are known to within `blur`.
+fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blur: f64) -> Result<Scattering, String> {
+    let normal = wide(v.point.normal);
+    let (light, camera) = (to_local(v, to_light), to_local(v, to_camera));
+    let cos_g = dot(normal, to_light);
+    if cos_g * light[2] <= 0.0 || dot(normal, to_camera) * camera[2] <= 0.0 {
+        return Err("a direction is on different sides of the two normals".into());
+    }
+    let mut s = match &v.bsdf {
+        Bsdf::Mirror { reflectance } => mirror(lanes(*reflectance), light, camera),
+        Bsdf::Conductor(b) => {
+            let [eta, k, scale] = [b.eta, b.k, b.reflectance].map(lanes);
+            let lane = |i: usize| scale[i] * fresnel(light[2], eta[i], k[i]);
+            mirror([0, 1, 2].map(lane), light, camera)
+        }
+        Bsdf::Dielectric(b) => glass(*b, light, camera),
+        Bsdf::RoughDielectric(b) if v.bsdf.is_delta() => {
+            let (interior_ior, exterior_ior) = b.indices();
+            glass(Dielectric { interior_ior, exterior_ior }, light, camera)
+        }
+        b => Ok(rough(b, light, camera, blur)),
+    }?;
+    // A refracted cosine follows from the other one, and Fresnel's equations from both.
+    let shares = [light[2], camera[2]].map(|cos| if s.smooth { cos * cos } else { cos.abs() });
+    s.uncertainty += blur * (1.0 / shares[0] + 1.0 / shares[1]);
+    s.value = s.value.map(|f| f / cos_g.abs());
+    Ok(s)
+}
+
+/// All that is not Dirac. How well it is known shows when a direction changes a little.
+fn rough(b: &Bsdf, light: Vector, camera: Vector, blur: f64) -> Scattering {
+    let eval = |x: f64, y: f64| {
+        let e = b.eval(narrow(light), narrow(plus(camera, [x, y, 0.0], blur)));
+        let [r, g, b] = lanes(e.value);
+        [r, g, b, e.to_light_pdf.get().into(), e.to_camera_pdf.get().into()]
+    };
+    let figures = eval(0.0, 0.0);
+    let changes = [eval(1.0, 1.0), eval(1.0, -1.0)]
+        .map(|other| (0..5).map(|i| (other[i] - figures[i]).abs() / figures[i].abs()).fold(0.0, f64::max));
+    let [r, g, b, to_light_pdf, to_camera_pdf] = figures;
+    let uncertainty = 2.0 * changes[0].max(changes[1]);
+    Scattering { value: [r, g, b], to_light_pdf, to_camera_pdf, smooth: false, uncertainty }
+}
+
+/// How far a smooth surface's directions may be from where they should be, by rounding.
+const SNELL: f64 = 1e-3;
+
+/// Mirroring keeps solid angles: all three coefficients are the reflectance or one.
+fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scattering, String> {
+    let off = plus(light, [-camera[0], -camera[1], camera[2]], -1.0);
+    if length(off) > SNELL || light[2] <= 0.0 {
+        return Err(format!("a mirror sends {light:?} to {camera:?}"));
+    }
+    Ok(Scattering {
+        value: reflectance,
+        to_light_pdf: 1.0,
+        to_camera_pdf: 1.0,
+        smooth: true,
+        uncertainty: 0.0,
+    })
+}
+
+/// The two Dirac lobes of a smooth interface.
+///
+/// Refracted radiance is T·(n_c/n_l)²·L, so that f·|cos| = T·(n_c/n_l)²·δ(to_light). The light walk refracts with
+/// density T·δ(to_camera), and n²·|cos|·dω is the same on both sides, so that
+/// δ(to_camera) = δ(to_light)·dω_l/dω_c = δ(to_light)·(n_c/n_l)²·|cos_c|/|cos_l|.
+fn glass(b: Dielectric, light: Vector, camera: Vector) -> Result<Scattering, String> {
+    let index = |v: Vector| f64::from(if v[2] > 0.0 { b.exterior_ior } else { b.interior_ior });
+    let (n_light, n_camera) = (index(light), index(camera));
+    let beyond = f64::from(b.exterior_ior) + f64::from(b.interior_ior) - n_light;
+    let reflectance = fresnel(light[2].abs(), beyond / n_light, 0.0);
+    if light[2] * camera[2] > 0.0 {
+        let upper = |v: Vector| [v[0], v[1], v[2].abs()];
+        let s = mirror([reflectance; 3], upper(light), upper(camera))?;
+        return Ok(Scattering { to_light_pdf: reflectance, to_camera_pdf: reflectance, ..s });
+    }
+    let tangent = |axis: usize| n_light * light[axis] + n_camera * camera[axis];
+    if tangent(0).hypot(tangent(1)) > SNELL {
+        return Err(format!("glass refracts {light:?} to {camera:?}"));
+    }
+    let (share, scale) = (1.0 - reflectance, (n_camera / n_light).powi(2));
+    Ok(Scattering {
+        value: [share * scale; 3],
+        to_light_pdf: share,
+        to_camera_pdf: share * scale * (camera[2] / light[2]).abs(),
+        smooth: true,
+        uncertainty: 0.0,
+    })
+}
+
+/// Film area in pixels per solid angle (or area) of the camera's rays to `seen`, from the camera's point on the
+/// path. Checks that it is seen where the contribution says.
+fn film_density(scene: &Scene, c: &Contribution<'_>, seen: &Node<'_>) -> Result<f64, String> {
+    let camera = &scene.camera;
+    let link = |u: [f32; 2]| -> Result<CameraLink, String> {
+        let at = narrow(seen.at);
+        let link = if seen.infinite { camera.connect_direction(at, u) } else { camera.connect(at, u) };
+        link.ok_or_else(|| "the camera cannot see the path".into())
+    };
+    // The lens is spanned by where these samples of the unit square lie on it.
+    let on_lens = |u| link(u).map(|l| wide(l.point.at));
+    let center = on_lens([0.5, 0.5])?;
+    let (x, y) = (plus(on_lens([1.0, 0.5])?, center, -1.0), plus(on_lens([0.5, 1.0])?, center, -1.0));
+    let area = dot(x, x);
+    let mut u = [0.5, 0.5];
+    if area > 0.0 {
+        let d = plus(wide(c.path.camera.at), center, -1.0);
+        u = warp::inverse_concentric_disk(Vec2::new((dot(d, x) / area) as f32, (dot(d, y) / area) as f32));
+    }
+    let link = link(u)?;
+    if link.point.infinite != c.path.camera.infinite
+        || length(plus(wide(link.point.at), wide(c.path.camera.at), -1.0)) > 1e-3
+    {
+        return Err("the camera's point is not on the lens".into());
+    }
+    let near = |a: &Vec2| (a.x - link.film.x).hypot(a.y - link.film.y) < 0.02;
+    if !camera.aliases(c.film, 1e6).any(|a| near(&a)) {
+        return Err(format!("seen at {:?} and not at {:?}", link.film, c.film));
+    }
+    Ok(link.pdf.get().into())
+}
+
+/// Fresnel's equations for unpolarised light, for an index `eta` + i·`k` relative to the medium around.
+fn fresnel(cos: f64, eta: f64, k: f64) -> f64 {
+    let square = [eta * eta - k * k, 2.0 * eta * k];
+    // w = √(index² − sin²), the refracted wave's cosine times its index.
+    let (re, im) = (square[0] - (1.0 - cos * cos), square[1]);
+    let modulus = re.hypot(im);
+    let w = [(0.5 * (modulus + re)).max(0.0).sqrt(), (0.5 * (modulus - re)).max(0.0).sqrt()];
+    let share = |a: [f64; 2]| {
+        let norm = |sign: f64| (a[0] + sign * w[0]).powi(2) + (a[1] + sign * w[1]).powi(2);
+        norm(-1.0) / norm(1.0)
+    };
+    0.5 * (share([cos, 0.0]) + share(square.map(|c| c * cos)))
+}
