@@ -17,7 +17,7 @@ mod tonemap;
 
 pub use display::{Develop, write_png};
 pub use error::FilmError;
-pub use film::{Film, FilmCounts};
+pub use film::{Film, FilmCounts, LightBuffer};
 pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr};
 pub use output::check_writable;

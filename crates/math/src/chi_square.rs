@@ -23,7 +23,6 @@ pub fn spherical(v: Vec3) -> [f64; 2] {
 }
 
 /// A density that is to be integrated over cells.
-#[derive(Clone, Copy, Debug)]
 pub struct Integrand<'a, F: ?Sized> {
     /// The density, in sr⁻¹.
     pub pdf: &'a F,

@@ -2,7 +2,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use caustica_film::{Film, FilmError, FilmLayout, Metadata, Window};
+use caustica_film::{Film, FilmError, FilmLayout, LightBuffer, Metadata, Window};
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
@@ -109,6 +109,9 @@ pub struct Session<'a> {
 /// Edge of a tile in pixels: small enough to share out evenly, large enough to keep caches warm.
 const TILE: u32 = 16;
 
+/// Threads get buffers of their own for splats while all of them together take no more bytes than this.
+const MOST_BUFFERED: u64 = 128 << 20;
+
 /// How often progress is told.
 const TICK: Duration = Duration::from_millis(100);
 
@@ -165,6 +168,8 @@ impl<'a> Session<'a> {
         let tiles = self.tiles();
         let queue = Queue::new(tiles.len() as u64, u64::from(self.options.samples));
         let threads = self.options.threads.unwrap_or_else(available_threads).max(1);
+        let per_thread = LightBuffer::memory(self.film.layout().window.pixels());
+        let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;
         let (sender, receiver) = mpsc::channel::<()>();
         std::thread::scope(|scope| {
             for i in 0..threads {
@@ -172,7 +177,7 @@ impl<'a> Session<'a> {
                 let (queue, tiles) = (&queue, &tiles);
                 let worker = std::thread::Builder::new().name(format!("render {i}"));
                 let spawned = worker.spawn_scoped(scope, move || {
-                    self.work(queue, tiles);
+                    self.work(queue, tiles, buffered);
                     drop(sender);
                 });
                 if let Err(e) = spawned {
@@ -248,18 +253,24 @@ impl<'a> Session<'a> {
             .collect()
     }
 
-    fn work(&self, queue: &Queue, tiles: &[Window]) {
+    /// Renders units until there are none left. `buffered` is whether splats are gathered apart.
+    fn work(&self, queue: &Queue, tiles: &[Window], buffered: bool) {
         let mut scratch = Scratch::default();
+        let mut buffer = if buffered { self.film.light_buffer() } else { None };
         let mut finished = false;
         while let Some((pass, unit)) = queue.next(finished) {
             let tile = tiles[unit as usize];
             for y in tile.y..tile.y + tile.height {
                 for x in tile.x..tile.x + tile.width {
-                    let mut sink = FilmSink { film: &self.film, kernel: &self.kernel, pixel: [x, y] };
+                    let (film, kernel) = (&self.film, &self.kernel);
+                    let mut sink = FilmSink { film, kernel, buffer: buffer.as_mut(), pixel: [x, y] };
                     self.kernel.sample([x, y], pass as u32, &mut scratch, &mut sink);
                 }
             }
             finished = true;
+        }
+        if let Some(buffer) = &mut buffer {
+            self.film.flush(buffer);
         }
     }
 }
@@ -268,6 +279,7 @@ impl<'a> Session<'a> {
 struct FilmSink<'a, 's> {
     film: &'a Film,
     kernel: &'a Kernel<'s>,
+    buffer: Option<&'a mut LightBuffer>,
     pixel: [u32; 2],
 }
 
@@ -280,7 +292,10 @@ impl Sink for FilmSink<'_, '_> {
     #[inline]
     fn splat(&mut self, film: Vec2, value: Rgb) {
         // The film divides by the number of passes; a pass has as many light paths as the window has pixels.
-        self.film.splat_light(self.kernel.filter(), film, value);
+        match &mut self.buffer {
+            Some(buffer) => self.film.splat_into(buffer, self.kernel.filter(), film, value),
+            None => self.film.splat_light(self.kernel.filter(), film, value),
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
-use caustica_math::elementary::{acos, atan2, safe_sqrt, sin_cos, tan};
+use caustica_math::elementary::{atan2, sin_cos, tan};
 use caustica_math::{SolidAnglePdf, Vec2, Vec3, warp};
 
 use crate::description::{self, CameraKind, FilmSettings};
@@ -97,6 +97,10 @@ impl Camera {
         let unit =
             |axis| column(axis).try_normalized().ok_or_else(|| error("the camera's transform flattens space"));
         let axes = [unit(Vec3::X)?, unit(Vec3::Y)?, unit(Vec3::Z)?];
+        let [left, up, forward] = axes;
+        if left.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(left).abs()) > 1e-4 {
+            return Err(error("the camera's transform shears space: its axes must be at right angles"));
+        }
         let width = film.width as f32;
         let lens = |fov: f32, radius: f32, focus: f32| {
             let valid = fov > 0.0 && fov < 180.0 && radius >= 0.0 && radius.is_finite() && focus > 0.0;
@@ -241,7 +245,7 @@ impl Camera {
                     return None;
                 }
                 let d = relative * (1.0 / distance);
-                let sin_theta = safe_sqrt(1.0 - d.y * d.y);
+                let sin_theta = sin_theta(d);
                 let direction = (self.origin - from) * (1.0 / distance);
                 Some(CameraLink {
                     point: CameraPoint { at: self.origin, infinite: false },
@@ -272,7 +276,7 @@ impl Camera {
             }
             Projection::Orthographic { .. } => return None,
             Projection::Environment => {
-                let sin_theta = safe_sqrt(1.0 - d.y * d.y);
+                let sin_theta = sin_theta(d);
                 (Vec2::default(), self.direction_to_film(d), self.environment_pdf(sin_theta), 1.0)
             }
         };
@@ -292,7 +296,7 @@ impl Camera {
     fn direction_to_film(&self, d: Vec3) -> Vec2 {
         Vec2::new(
             (0.5 - atan2(d.x, d.z) * (0.5 * FRAC_1_PI)) * self.width,
-            acos(d.y) * FRAC_1_PI * self.height,
+            atan2(sin_theta(d), d.y) * FRAC_1_PI * self.height,
         )
     }
 
@@ -325,6 +329,11 @@ impl Camera {
     pub fn position(&self) -> Vec3 {
         self.origin
     }
+}
+
+/// The sine of the angle to the upper pole of a 360° picture.
+fn sin_theta(d: Vec3) -> f32 {
+    (d.x * d.x + d.z * d.z).sqrt()
 }
 
 fn lens_point(radius: f32, u: [f32; 2]) -> Vec2 {

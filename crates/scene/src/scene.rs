@@ -1,6 +1,6 @@
 //! The flat scene: what rays run on.
 
-use caustica_math::{Frame, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
+use caustica_math::{Frame, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray};
@@ -46,7 +46,11 @@ impl Scene {
         let film = description.film.clone();
         let camera = Camera::new(&description.camera, &film)?;
         check_references(&description)?;
-        let surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
+        let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
+        for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
+            let material = &description.materials[shape.material.0 as usize].kind;
+            flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
+        }
         let bvh = Bvh::new(surfaces.positions(), surfaces.triangles(), &surfaces.spheres());
         let bounds = bvh.bounds();
         let (center, radius) = if bounds.is_empty() {
@@ -117,28 +121,35 @@ impl Scene {
         let unit = |d: [f32; 3]| {
             Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero")
         };
+        let at = |p: [f32; 3]| {
+            let p = Vec3::from(p);
+            if p.is_finite() && p.abs().max_element() <= 1e15 { Ok(p) } else { Err("the lamp's position must be finite") }
+        };
+        let colour = |c: Rgb| {
+            if c.is_valid() { Ok(w.spectrum(c)) } else { Err("a lamp's colour must be finite and not negative") }
+        };
         let full = 4.0 * std::f32::consts::PI;
         Ok(Some(match *kind {
             LightKind::Point { position, intensity } => {
-                let intensity = w.spectrum(intensity);
-                (Light::Point { position: position.into(), intensity }, full * w.luminance(intensity))
+                let intensity = colour(intensity)?;
+                (Light::Point { position: at(position)?, intensity }, full * w.luminance(intensity))
             }
             LightKind::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 if !(0.0 <= inner_angle && inner_angle <= outer_angle && outer_angle <= 180.0 && outer_angle > 0.0) {
                     return Err("a spot's angles must satisfy 0 ≤ inner ≤ outer ≤ 180 degrees");
                 }
-                let intensity = w.spectrum(intensity);
+                let intensity = colour(intensity)?;
                 let spot =
-                    SpotLight::new(position.into(), unit(direction)?, intensity, inner_angle, outer_angle);
+                    SpotLight::new(at(position)?, unit(direction)?, intensity, inner_angle, outer_angle);
                 (Light::Spot(spot), spot.solid_angle() * w.luminance(intensity))
             }
             LightKind::Directional { direction, irradiance } => {
-                let irradiance = w.spectrum(irradiance);
+                let irradiance = colour(irradiance)?;
                 let power = power_through_disk(w.luminance(irradiance), self.radius);
                 (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
             }
             LightKind::Constant { radiance } => {
-                let light = EnvironmentLight::Constant(w.spectrum(radiance));
+                let light = EnvironmentLight::Constant(colour(radiance)?);
                 let power = power_through_disk(light.flux(&around), self.radius);
                 (Light::Environment(light), power)
             }
@@ -220,10 +231,12 @@ impl Scene {
         if self.surfaces.sphere(flat.first_primitive).is_some() {
             return false;
         }
-        let probes = 64;
+        let probes = 64_u32;
         let mut stream = SampleStream::new(StreamId { seed: 0, pixel: shape as u32, sample: 0, walk: 0 });
         (0..probes).all(|i| {
-            let triangle = flat.first_primitive + (i * flat.primitive_count / probes).min(flat.primitive_count - 1);
+            // In 64 bits, because a shape may have 2²⁷ triangles.
+            let share = u64::from(i) * u64::from(flat.primitive_count) / u64::from(probes);
+            let triangle = flat.first_primitive + (share as u32).min(flat.primitive_count - 1);
             let [b1, b2] = warp::uniform_triangle(stream.next_2d());
             let p = self.surfaces.triangle_point(triangle, b1, b2);
             let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(stream.next_2d()));
@@ -283,6 +296,23 @@ impl Scene {
     }
 }
 
+/// The texture that a material looks up, if it has one.
+fn texture_of(material: &MaterialKind) -> Option<&Texture> {
+    match material {
+        MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => Some(t),
+        MaterialKind::Mirror { .. }
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::Conductor { .. }
+        | MaterialKind::RoughConductor { .. } => None,
+    }
+}
+
+/// Whether a texture depends on the texture coordinates.
+fn varies(texture: &Texture) -> bool {
+    !matches!(texture, Texture::Constant(_))
+}
+
 /// Every id must name something.
 fn check_references(d: &Description) -> Result<(), Diagnostic> {
     let image_exists = |t: &Texture| match t {
@@ -290,15 +320,12 @@ fn check_references(d: &Description) -> Result<(), Diagnostic> {
         _ => true,
     };
     for image in &d.images {
-        if image.width == 0 || image.pixels.len() != image.width as usize * image.height as usize {
+        if image.width == 0 || image.height == 0 || image.pixels.len() != image.width as usize * image.height as usize {
             return Err(Diagnostic::error("an image's pixels do not match its size"));
         }
     }
     for m in &d.materials {
-        let (MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. }) = &m.kind else {
-            continue;
-        };
-        if !image_exists(t) {
+        if texture_of(&m.kind).is_some_and(|t| !image_exists(t)) {
             return Err(Diagnostic::error("a material's texture names an image that does not exist")
                 .at(m.origin.clone()));
         }

@@ -21,6 +21,9 @@ pub struct FlatShape {
     pub first_primitive: u32,
     /// How many primitives it has.
     pub primitive_count: u32,
+    /// Whether anything looks at its texture coordinates. Spheres leave theirs at zero otherwise, because
+    /// two arcs cost as much as all the rest of a hit.
+    pub needs_uv: bool,
     first_position: u32,
     first_normal: u32,
     first_uv: u32,
@@ -121,6 +124,7 @@ impl Surfaces {
             light: None,
             first_primitive: self.triangles.len() as u32,
             primitive_count: 0,
+            needs_uv: true,
             first_position: self.positions.len() as u32,
             first_normal: NONE,
             first_uv: NONE,
@@ -232,7 +236,10 @@ impl Surfaces {
                 .hint("use the same scale on all three axes, or a mesh")
         })?;
         let data = SphereData { center: shape.to_world.point(center), radius: radius * scale };
-        if !data.center.is_finite() || !(data.radius > 0.0 && data.radius < 1e15) {
+        if !data.center.is_finite() || data.center.abs().max_element() > 1e15 {
+            return Err(shape_error(shape, "is a sphere whose centre is not finite"));
+        }
+        if !(data.radius > 0.0 && data.radius < 1e15) {
             return Err(shape_error(shape, "is a sphere whose radius is not a positive number"));
         }
         let to_shape: Transform = shape.to_world.inverse();
@@ -377,15 +384,20 @@ impl Surfaces {
     pub fn sphere_point(&self, primitive: u32, normal: Vec3) -> SurfacePoint {
         let sphere = &self.spheres[primitive as usize - self.triangles.len()];
         let d = &sphere.data;
-        let [x, y, z] = sphere.rows.map(|row| row.dot(normal));
+        let uv = if self.shapes[sphere.shape as usize].needs_uv {
+            let [x, y, z] = sphere.rows.map(|row| row.dot(normal));
+            Vec2::new(
+                0.5 + atan2(y, x) * (0.5 * std::f32::consts::FRAC_1_PI),
+                0.5 + asin(z) * std::f32::consts::FRAC_1_PI,
+            )
+        } else {
+            Vec2::default()
+        };
         SurfacePoint {
             position: d.center + normal * d.radius,
             normal,
             frame: Frame::from_normal(normal),
-            uv: Vec2::new(
-                0.5 + atan2(y, x) * (0.5 * std::f32::consts::FRAC_1_PI),
-                0.5 + asin(z) * std::f32::consts::FRAC_1_PI,
-            ),
+            uv,
             shape: sphere.shape,
             primitive,
             offset: (d.center.abs().max_element() + d.radius) * POSITION_ERROR + f32::MIN_POSITIVE,

@@ -30,6 +30,19 @@ impl TextureTable<'_> {
         }
     }
 
+    /// The mean luminance over all that the texture may show. More than zero if the texture is not black.
+    pub(crate) fn mean_luminance(&self, texture: &Texture) -> f32 {
+        match texture {
+            Texture::Constant(c) => c.luminance(),
+            Texture::Checkerboard { value1, value2, .. } => 0.5 * (value1.luminance() + value2.luminance()),
+            Texture::Image { image, .. } => {
+                let pixels = &self.images[image.0 as usize].pixels;
+                let sum: f64 = pixels.iter().map(|p| f64::from(p.luminance())).sum();
+                (sum / pixels.len() as f64) as f32
+            }
+        }
+    }
+
     /// The texture's spectrum at `uv`.
     #[inline]
     pub fn spectrum(&self, texture: &Texture, uv: Vec2, wavelengths: Wavelengths) -> Spectrum {

@@ -119,6 +119,7 @@ fn bodies() -> impl Iterator<Item = (String, Scene)> {
     })
 }
 
+/// A point of the body, but not right at an edge: there the wall beside it may be nearer than the offset.
 fn random_point(scene: &Scene, s: &mut SampleStream) -> SurfacePoint {
     let surfaces = scene.surfaces();
     let count = surfaces.shapes[0].primitive_count;
@@ -127,7 +128,8 @@ fn random_point(scene: &Scene, s: &mut SampleStream) -> SurfacePoint {
     } else {
         let t = ((s.next_1d() * count as f32) as u32).min(count - 1);
         let [b1, b2] = warp::uniform_triangle(s.next_2d());
-        surfaces.triangle_point(t, b1, b2)
+        let inward = |b: f32| 1.0 / 3.0 + (b - 1.0 / 3.0) * 0.998;
+        surfaces.triangle_point(t, inward(b1), inward(b2))
     }
 }
 
@@ -154,7 +156,7 @@ fn nothing_shadows_itself_outside() {
             let ray = Ray { origin: p.off_surface(direction), direction, t_max: f32::INFINITY };
             falsely_hit += u32::from(scene.occluded(&ray));
         }
-        println!("{name} {falsely_hit}");
+        assert_eq!(falsely_hit, 0, "{name}");
     }
 }
 
@@ -175,6 +177,6 @@ fn nothing_shadows_itself_inside() {
             falsely_hidden += u32::from(!scene.visible(from, to));
             falsely_hidden += u32::from(!scene.visible(to, from));
         }
-        println!("{name} {falsely_hidden}");
+        assert_eq!(falsely_hidden, 0, "{name}");
     }
 }

@@ -6,10 +6,9 @@
 //! f(x) = Lₑ(x₀→x₁) · ∏ⱼ G(xⱼ, xⱼ₊₁) · ∏ⱼ f(xⱼ)·|cos_s|/|cos_g| · Wₑ(x_{k−1}→x_k)
 //!
 //! with scattering taken as light travels, both cosines on the light's side, and geometric normals in G. A vertex
-//! at infinity is measured by direction, so that its edge has neither 1/d² nor its cosine. The strategy that
-//! takes i vertices from the light walk makes the path with a density pᵢ(x), in the product of the vertices' own
-//! measures, and tries nᵢ times a pixel: once, or as often as the window has pixels if i = k. Its unweighted
-//! estimate must be f/(nᵢ·pᵢ), and its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
+//! at infinity is measured by direction: its edge has no 1/d² and no cosine there. Strategy s = i makes the path
+//! with a density pᵢ(x), in the product of the vertices' own measures, and tries nᵢ times: once, or for i = k as
+//! often as the window has pixels. Its estimate must be f/(nᵢ·pᵢ), its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
 //!
 //! The point on the lens has the same density in every strategy and is left out of both f and pᵢ. So are
 //! Dirac distributions: each smooth surface puts one δ(to_light) into f and into every density, and what stands
@@ -22,7 +21,8 @@ use caustica_math::{Spectrum, Vec2, Vec3, Wavelengths, warp};
 use caustica_scene::Scene;
 use caustica_scene::bsdf::{Bsdf, Dielectric};
 use caustica_scene::camera::{CameraLink, CameraPoint};
-use caustica_scene::light::{Anchor, LightPoint};
+use caustica_scene::light::{Anchor, EmissionPdf, LightPoint};
+use caustica_scene::surface::SurfacePoint;
 use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Heuristic, Strategy, StrategySet};
 
@@ -44,8 +44,10 @@ fn plus(a: Vector, b: Vector, k: f64) -> Vector {
     [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]]
 }
 
-fn length(a: Vector) -> f64 {
-    dot(a, a).sqrt()
+/// The distance of two points.
+fn distance(a: Vector, b: Vector) -> f64 {
+    let d = plus(a, b, -1.0);
+    dot(d, d).sqrt()
 }
 
 /// The lanes of a spectrum that carry light.
@@ -54,7 +56,6 @@ pub fn lanes(s: Spectrum) -> Vector {
 }
 
 /// One vertex of the full path.
-#[derive(Clone, Copy)]
 struct Node<'a> {
     /// Position or, at infinity, the direction towards it.
     at: Vector,
@@ -95,13 +96,19 @@ struct Scattering {
     uncertainty: f64,
 }
 
+impl Scattering {
+    fn smooth(value: Vector, to_light_pdf: f64, to_camera_pdf: f64) -> Self {
+        Self { value, to_light_pdf, to_camera_pdf, smooth: true, uncertainty: 0.0 }
+    }
+}
+
 /// The edge from xⱼ to xⱼ₊₁.
 struct Edge {
     falloff: f64,
     /// |cos| at the end nearer to the lamp, and at the other.
     light_cos: f64,
     camera_cos: f64,
-    /// The error of its direction by rounding, and how much that and its length's matter to all but scattering.
+    /// The error of its direction by rounding, and what errors cost outside of scattering.
     blur: f64,
     uncertainty: f64,
 }
@@ -113,13 +120,8 @@ impl Edge {
         let size = a.at.iter().chain(&b.at).fold(0.0_f64, |m, c| m.max(c.abs()));
         // Rays start off their surfaces, by about 1e-6 of the coordinates.
         let blur = 2e-7 + 5e-7 * size * falloff.sqrt();
-        Self {
-            falloff,
-            light_cos,
-            camera_cos,
-            blur,
-            uncertainty: blur * (2.0 + 1.0 / light_cos + 1.0 / camera_cos),
-        }
+        let uncertainty = blur * (2.0 + 1.0 / light_cos + 1.0 / camera_cos);
+        Self { falloff, light_cos, camera_cos, blur, uncertainty }
     }
 }
 
@@ -168,8 +170,7 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     let radiance = lanes(lights.radiance(lamp, narrow(emitted)));
     if nodes[0].infinite && nodes[1].infinite {
         // A camera of parallel rays looks at the sky: a density in both measures at once, and no other way.
-        let densities = vec![1.0, 0.0];
-        return Ok(Judgement { measured: radiance, densities, uncertainty: 0.0 });
+        return Ok(Judgement { measured: radiance, densities: vec![1.0, 0.0], uncertainty: 0.0 });
     }
     let edges: Vec<Edge> = nodes.windows(2).map(|n| Edge::new(&n[0], &n[1])).collect();
     let scatterings: Vec<Option<Scattering>> = (0..=k)
@@ -190,26 +191,27 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     for s in scatterings.iter().flatten() {
         measured = [0, 1, 2].map(|lane| measured[lane] * s.value[lane]);
     }
-    let emission = lights.emission_pdf(lamp, narrow(emitted));
     let starts = Starts {
-        emission: [emission.point.get().into(), emission.direction.get().into()],
+        emission: lights.emission_pdf(lamp, narrow(emitted)),
         next_event: lights.towards_pdf(narrow(nodes[1].at), lamp).get().into(),
         camera: film_density,
         can_be_hit: !lights.lights.get(lamp.light).is_delta(),
     };
     let window = scene.film.window();
-    let light_paths = f64::from(window.width) * f64::from(window.height);
     let mut densities: Vec<f64> = (0..=k).map(|i| density(i, &scatterings, &edges, &starts)).collect();
-    densities[k] *= light_paths;
-    let uncertainty = edges.iter().map(|e| e.uncertainty).sum::<f64>()
+    densities[k] *= f64::from(window.width) * f64::from(window.height);
+    // A spot alone differs by direction, by the cosine to its axis: that of a shortened vector is less.
+    let dimmed = lights.radiance(lamp, narrow(emitted.map(|c| c * (1.0 - 4.0 * edges[0].blur))));
+    let dimming = (1.0 - lanes(dimmed)[0] / radiance[0]).abs();
+    let uncertainty = dimming
+        + edges.iter().map(|e| e.uncertainty).sum::<f64>()
         + scatterings.iter().flatten().map(|s| s.uncertainty).sum::<f64>();
     Ok(Judgement { measured, densities, uncertainty })
 }
 
 /// Densities at the two ends of a path.
 struct Starts {
-    /// Of the point, and of the direction (at infinity: per area across it).
-    emission: [f64; 2],
+    emission: EmissionPdf,
     next_event: f64,
     /// Film area in pixels per solid angle or area.
     camera: f64,
@@ -227,20 +229,15 @@ fn density(i: usize, scatterings: &[Option<Scattering>], edges: &[Edge], starts:
     let mut p = match i {
         0 => 1.0,
         1 if k > 1 => starts.next_event,
-        _ => starts.emission[0],
+        _ => starts.emission.point.get().into(),
     };
     for j in 1..i {
-        let direction = match &scatterings[j - 1] {
-            Some(s) => s.to_camera_pdf,
-            None => starts.emission[1],
-        };
+        let emitted = || starts.emission.direction.get().into();
+        let direction = scatterings[j - 1].as_ref().map_or_else(emitted, |s| s.to_camera_pdf);
         p *= direction * edges[j - 1].falloff * edges[j - 1].camera_cos;
     }
     for j in i..k {
-        let direction = match &scatterings[j + 1] {
-            Some(s) => s.to_light_pdf,
-            None => starts.camera,
-        };
+        let direction = scatterings[j + 1].as_ref().map_or(starts.camera, |s| s.to_light_pdf);
         p *= direction * edges[j].falloff * edges[j].light_cos;
     }
     p
@@ -260,21 +257,17 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
         }
         eye = rest;
     }
-    let inner = s + t - 2;
-    if light.len() + eye.len() != inner || light.len() != s.saturating_sub(1) {
+    if light.len() + eye.len() != s + t - 2 || light.len() != s.saturating_sub(1) {
         return Err(format!("{} light and {} eye vertices", light.len(), eye.len()));
     }
-    let joined = |walked: &[Vertex], joins: bool| walked.len() - usize::from(joins && !walked.is_empty());
-    for v in light[..joined(light, true)].iter().chain(&eye[..joined(eye, s > 0)]) {
-        if v.delta != v.bsdf.is_delta() {
-            return Err("a vertex's Dirac flag is wrong".into());
-        }
+    // A walk's last vertex is joined; it did not go on from there.
+    let scattered = light.iter().rev().skip(1).chain(eye.iter().rev().skip(s.min(1)));
+    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta()) {
+        return Err("a vertex's Dirac flag is wrong".into());
     }
-    let surface = |v: &'a Vertex| Node {
-        at: wide(v.point.position),
-        infinite: false,
-        normal: Some(wide(v.point.normal)),
-        surface: Some(v),
+    let surface = |v: &'a Vertex| {
+        let SurfacePoint { position, normal, .. } = v.point;
+        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), surface: Some(v) }
     };
     let CameraPoint { at: eye_at, infinite: parallel } = c.path.camera;
     let mut nodes = vec![Node { at: wide(at), infinite, normal, surface: None }];
@@ -338,17 +331,10 @@ const SNELL: f64 = 1e-3;
 
 /// Mirroring keeps solid angles: all three coefficients are the reflectance or one.
 fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scattering, String> {
-    let off = plus(light, [-camera[0], -camera[1], camera[2]], -1.0);
-    if length(off) > SNELL || light[2] <= 0.0 {
+    if distance(light, [-camera[0], -camera[1], camera[2]]) > SNELL || light[2] <= 0.0 {
         return Err(format!("a mirror sends {light:?} to {camera:?}"));
     }
-    Ok(Scattering {
-        value: reflectance,
-        to_light_pdf: 1.0,
-        to_camera_pdf: 1.0,
-        smooth: true,
-        uncertainty: 0.0,
-    })
+    Ok(Scattering::smooth(reflectance, 1.0, 1.0))
 }
 
 /// The two Dirac lobes of a smooth interface.
@@ -363,21 +349,15 @@ fn glass(b: Dielectric, light: Vector, camera: Vector) -> Result<Scattering, Str
     let reflectance = fresnel(light[2].abs(), beyond / n_light, 0.0);
     if light[2] * camera[2] > 0.0 {
         let upper = |v: Vector| [v[0], v[1], v[2].abs()];
-        let s = mirror([reflectance; 3], upper(light), upper(camera))?;
-        return Ok(Scattering { to_light_pdf: reflectance, to_camera_pdf: reflectance, ..s });
+        mirror([reflectance; 3], upper(light), upper(camera))?;
+        return Ok(Scattering::smooth([reflectance; 3], reflectance, reflectance));
     }
     let tangent = |axis: usize| n_light * light[axis] + n_camera * camera[axis];
     if tangent(0).hypot(tangent(1)) > SNELL {
         return Err(format!("glass refracts {light:?} to {camera:?}"));
     }
     let (share, scale) = (1.0 - reflectance, (n_camera / n_light).powi(2));
-    Ok(Scattering {
-        value: [share * scale; 3],
-        to_light_pdf: share,
-        to_camera_pdf: share * scale * (camera[2] / light[2]).abs(),
-        smooth: true,
-        uncertainty: 0.0,
-    })
+    Ok(Scattering::smooth([share * scale; 3], share, share * scale * (camera[2] / light[2]).abs()))
 }
 
 /// Film area in pixels per solid angle (or area) of the camera's rays to `seen`, from the camera's point on the
@@ -390,9 +370,9 @@ fn film_density(scene: &Scene, c: &Contribution<'_>, seen: &Node<'_>) -> Result<
         link.ok_or_else(|| "the camera cannot see the path".into())
     };
     // The lens is spanned by where these samples of the unit square lie on it.
-    let on_lens = |u| link(u).map(|l| wide(l.point.at));
-    let center = on_lens([0.5, 0.5])?;
-    let (x, y) = (plus(on_lens([1.0, 0.5])?, center, -1.0), plus(on_lens([0.5, 1.0])?, center, -1.0));
+    let center = wide(link([0.5; 2])?.point.at);
+    let radius = |u| link(u).map(|l| plus(wide(l.point.at), center, -1.0));
+    let (x, y) = (radius([1.0, 0.5])?, radius([0.5, 1.0])?);
     let area = dot(x, x);
     let mut u = [0.5, 0.5];
     if area > 0.0 {
@@ -400,9 +380,7 @@ fn film_density(scene: &Scene, c: &Contribution<'_>, seen: &Node<'_>) -> Result<
         u = warp::inverse_concentric_disk(Vec2::new((dot(d, x) / area) as f32, (dot(d, y) / area) as f32));
     }
     let link = link(u)?;
-    if link.point.infinite != c.path.camera.infinite
-        || length(plus(wide(link.point.at), wide(c.path.camera.at), -1.0)) > 1e-3
-    {
+    if distance(wide(link.point.at), wide(c.path.camera.at)) > 1e-3 {
         return Err("the camera's point is not on the lens".into());
     }
     let near = |a: &Vec2| (a.x - link.film.x).hypot(a.y - link.film.y) < 0.02;

@@ -40,8 +40,10 @@ impl AreaLight {
     pub fn new(shape: &FlatShape, radiance: Texture, around: &Surroundings<'_>) -> Option<(Self, f32)> {
         let first = shape.first_primitive;
         let luminance = |p: &SurfacePoint| around.textures.rgb(&radiance, p.uv).luminance();
+        // The probes may all miss a texture's bright spots, but no lamp may be lost that emits anywhere.
+        let least = UNIFORM_PART * around.textures.mean_luminance(&radiance);
         if let Some(data) = around.surfaces.sphere(first) {
-            let mean = sphere_mean(first, around, &luminance);
+            let mean = sphere_mean(first, around, &luminance).max(least);
             let power = PI * 4.0 * PI * data.radius * data.radius * mean;
             let surface = Surface::Sphere { primitive: first, data: *data };
             return (power > 0.0).then_some((Self { radiance, surface }, power));
@@ -49,15 +51,17 @@ impl AreaLight {
         let triangles = first..first + shape.primitive_count;
         let areas: Vec<f32> = triangles.clone().map(|t| area(around.surfaces.corners(t))).collect();
         let means: Vec<f32> = triangles.map(|t| triangle_mean(t, around, &luminance)).collect();
-        let total_area: f32 = areas.iter().sum();
-        let power: f32 = areas.iter().zip(&means).map(|(a, m)| a * m).sum();
-        let floor = UNIFORM_PART * power / total_area;
+        // Sums of a million triangles need the precision.
+        let total_area: f64 = areas.iter().map(|a| f64::from(*a)).sum();
+        let power: f64 = areas.iter().zip(&means).map(|(a, m)| f64::from(*a) * f64::from(*m)).sum();
+        let mean = (power / total_area) as f32;
+        let floor = (UNIFORM_PART * mean).max(least);
         let weights: Vec<f32> = areas.iter().zip(&means).map(|(a, m)| a * (m + floor)).collect();
         let choice = Distribution1d::new(&weights)?;
         let density =
             areas.iter().enumerate().map(|(i, a)| if *a > 0.0 { choice.mass(i).0 / a } else { 0.0 }).collect();
         let surface = Surface::Mesh { first_primitive: first, choice, density };
-        Some((Self { radiance, surface }, PI * power))
+        Some((Self { radiance, surface }, PI * mean.max(least) * total_area as f32))
     }
 
     /// The radiance at texture coordinates `uv`.
@@ -159,7 +163,7 @@ impl Cone {
     fn new(sphere: &SphereData, from: Vec3) -> Option<Self> {
         let to_center = sphere.center - from;
         let sin2 = sphere.radius * sphere.radius / to_center.length_squared();
-        if sin2 > 0.9999 {
+        if sin2 > 0.99999 {
             return None;
         }
         let one_minus_cos = sin2 / (1.0 + safe_sqrt(1.0 - sin2));

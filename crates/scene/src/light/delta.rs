@@ -1,6 +1,6 @@
 use std::f32::consts::PI;
 
-use caustica_math::elementary::cos;
+use caustica_math::elementary::sin;
 use caustica_math::{Frame, SolidAnglePdf, Spectrum, Vec3, warp};
 
 /// A point that lights a cone, as [`crate::description::LightKind::Spot`] describes it.
@@ -10,54 +10,64 @@ pub struct SpotLight {
     pub position: Vec3,
     intensity: Spectrum,
     frame: Frame,
-    cos_inner: f32,
-    cos_outer: f32,
+    /// 1 − cos of the half angles: cosines of narrow cones all round to one.
+    inner: f32,
+    outer: f32,
 }
 
 impl SpotLight {
     /// From its axis and half angles in degrees.
     pub fn new(position: Vec3, axis: Vec3, intensity: Spectrum, inner: f32, outer: f32) -> Self {
+        let one_minus_cos = |degrees: f32| {
+            let s = sin(0.5 * degrees.to_radians());
+            2.0 * s * s
+        };
         Self {
             position,
             intensity,
             frame: Frame::from_normal(axis),
-            cos_inner: cos(inner.to_radians()),
-            cos_outer: cos(outer.to_radians()),
+            inner: one_minus_cos(inner),
+            outer: one_minus_cos(outer),
         }
+    }
+
+    /// 1 − cos between the axis and a direction, without the cancellation of that difference.
+    #[inline]
+    fn one_minus_cos(&self, direction: Vec3) -> f32 {
+        0.5 * (direction - self.frame.z).length_squared()
     }
 
     /// The intensity in a direction of travel.
     #[inline]
     pub fn intensity_in(&self, direction: Vec3) -> Spectrum {
-        let c = self.frame.z.dot(direction);
-        if c <= self.cos_outer {
+        let h = self.one_minus_cos(direction);
+        if h >= self.outer {
             return Spectrum::ZERO;
         }
-        if c >= self.cos_inner {
+        if h <= self.inner {
             return self.intensity;
         }
-        let t = (c - self.cos_outer) / (self.cos_inner - self.cos_outer);
+        let t = (self.outer - h) / (self.outer - self.inner);
         self.intensity * (t * t * (3.0 - 2.0 * t))
     }
 
     /// A uniform direction in the outer cone.
     pub fn sample_direction(&self, u: [f32; 2]) -> Vec3 {
-        self.frame.to_world(warp::uniform_cone(u, 1.0 - self.cos_outer))
+        self.frame.to_world(warp::uniform_cone(u, self.outer))
     }
 
-    /// Its density.
+    /// Its density; zero where there is no light.
     #[inline]
     pub fn direction_pdf(&self, direction: Vec3) -> SolidAnglePdf {
-        // The samples' own rounding must not put them outside of the cone.
-        if self.frame.z.dot(direction) < self.cos_outer - 1e-6 {
+        if self.one_minus_cos(direction) >= self.outer {
             return SolidAnglePdf::ZERO;
         }
-        warp::uniform_cone_pdf(1.0 - self.cos_outer)
+        warp::uniform_cone_pdf(self.outer)
     }
 
     /// ∫ of the falloff over the sphere, in sr: the smoothstep averages to one half between the cones.
     pub fn solid_angle(&self) -> f32 {
-        2.0 * PI * (1.0 - 0.5 * (self.cos_inner + self.cos_outer))
+        PI * (self.inner + self.outer)
     }
 }
 

@@ -1,6 +1,6 @@
 use std::f32::consts::{FRAC_1_PI, PI, TAU};
 
-use caustica_math::elementary::{acos, atan2, sin, sin_cos, sin_cos_turns};
+use caustica_math::elementary::{atan2, sin, sin_cos, sin_cos_turns};
 use caustica_math::{Distribution2d, Rgb, SolidAnglePdf, Spectrum, Vec3, warp};
 
 use super::Surroundings;
@@ -31,7 +31,12 @@ pub struct EnvironmentMap {
 /// Direction in the map's frame to the unit square, from the upper left corner.
 fn direction_to_square(d: Vec3) -> [f32; 2] {
     let x = 0.5 - atan2(d.x, d.z) * (0.5 * FRAC_1_PI);
-    [if x >= 1.0 { 0.0 } else { x }, acos(d.y) * FRAC_1_PI]
+    // Of a direction near a pole, d.y alone tells next to nothing about the angle.
+    [if x >= 1.0 { 0.0 } else { x }, atan2(sin_theta(d), d.y) * FRAC_1_PI]
+}
+
+fn sin_theta(d: Vec3) -> f32 {
+    (d.x * d.x + d.z * d.z).sqrt()
 }
 
 /// The inverse, and sin θ.
@@ -98,7 +103,7 @@ impl EnvironmentLight {
             Self::Constant(_) => warp::UNIFORM_SPHERE_PDF,
             Self::Map(map) => {
                 let local = map.local(towards);
-                let sin_theta = caustica_math::elementary::safe_sqrt(1.0 - local.y * local.y);
+                let sin_theta = sin_theta(local);
                 if sin_theta <= 0.0 {
                     return SolidAnglePdf::ZERO;
                 }
