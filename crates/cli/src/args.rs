@@ -38,13 +38,13 @@ pub enum Command {
 }
 
 impl Arguments {
-    /// Whether failures are to be told in JSON.
-    pub fn json(&self) -> bool {
+    /// How to speak: in JSON, and of nothing but errors.
+    pub fn voice(&self) -> (bool, bool) {
         match &self.command {
-            Command::Render(a) => a.json,
-            Command::Info(a) => a.json,
-            Command::Test(a) => a.json,
-            Command::Develop(_) => false,
+            Command::Render(a) => (a.json, a.quiet),
+            Command::Info(a) => (a.json, false),
+            Command::Test(a) => (a.json, false),
+            Command::Develop(_) => (false, false),
         }
     }
 }
@@ -81,10 +81,10 @@ pub struct Render {
     /// Print one sample, strategy by strategy, instead of rendering: X,Y,SAMPLE
     #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
     pub replay: Option<([u32; 2], u32)>,
-    /// No progress bar and no summary
+    /// Say nothing but errors: no progress bar, no warnings, no summary
     #[arg(short, long)]
     pub quiet: bool,
-    /// Print the result and all diagnostics as JSON on the standard output
+    /// Print the result, warnings or the error as one JSON object on the standard output
     #[arg(long)]
     pub json: bool,
 }
@@ -154,6 +154,9 @@ pub struct Test {
     /// Seed of the sample streams
     #[arg(long, default_value_t = 0)]
     pub seed: u64,
+    /// Worker threads; the outcome does not depend on it [default: all]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

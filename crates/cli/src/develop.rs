@@ -1,28 +1,34 @@
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use caustica::film::{self, read_exr, write_exr, write_png};
+use caustica::film::{check_writable, read_exr, write_exr};
 
 use crate::args::Develop;
+use crate::console::{Console, print};
 use crate::failure::Failure;
-use crate::prompt;
+use crate::{prompt, render};
 
-pub fn run(args: &Develop) -> Result<ExitCode, Failure> {
-    let (picture, metadata) = read_exr(&args.film).map_err(Failure::input)?;
+pub fn run(args: &Develop, _: &Console) -> Result<ExitCode, Failure> {
     let output: PathBuf = args.output.clone().unwrap_or_else(|| args.film.with_extension("png"));
-    let light_image = prompt::light_image(args.light_image);
-    match output.extension().and_then(|e| e.to_str()) {
-        Some("png") => {
-            let develop = film::Develop { exposure: args.look.exposure, tone_map: args.look.tone_map };
-            let (w, pixels) = (picture.window, picture.combined(light_image));
-            write_png(&output, w.width, w.height, &pixels, develop)
-        }
-        Some("exr") => write_exr(&output, &picture, light_image, &metadata),
-        _ => {
-            return Err(Failure::Usage(format!("`{}` must end in .png or .exr", output.display())));
-        }
+    let to_exr = is_exr(&output)?;
+    let (picture, metadata) = read_exr(&args.film).map_err(|e| Failure::input(&args.film, e))?;
+    check_writable(&output).map_err(|e| Failure::output(&output, e))?;
+    let light_image = prompt::light_image(args.light_image, picture.light_samples > 0);
+    if to_exr {
+        write_exr(&output, &picture, light_image, &metadata).map_err(|e| Failure::output(&output, e))?;
+    } else {
+        render::save_png(&output, &picture, light_image, args.look)?;
     }
-    .map_err(Failure::output)?;
-    println!("wrote {}", output.display());
+    print(format_args!("wrote {}", output.display()))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether the output is an OpenEXR file and not a PNG.
+fn is_exr(output: &Path) -> Result<bool, Failure> {
+    match output.extension().map(OsStr::to_ascii_lowercase).as_deref().and_then(OsStr::to_str) {
+        Some("png") => Ok(false),
+        Some("exr") => Ok(true),
+        _ => Err(Failure::Usage(format!("the output `{}` must end in .png or .exr", output.display()))),
+    }
 }

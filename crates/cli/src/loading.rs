@@ -1,18 +1,26 @@
 use std::path::Path;
 
 use caustica::scene::Diagnostic;
-use caustica::{Description, default_scene, import};
+use caustica::{Description, Scene, default_scene, import};
 
+use crate::console::Console;
 use crate::failure::Failure;
 
 /// The scene of that file, or the built-in one.
-pub fn description(path: Option<&Path>) -> Result<(Description, Vec<Diagnostic>), Failure> {
-    let Some(path) = path else { return Ok((default_scene::description(), Vec::new())) };
+pub fn description(path: Option<&Path>, console: &mut Console) -> Result<Description, Failure> {
+    let Some(path) = path else { return Ok(default_scene::description()) };
     let loaded = import::load(path)?;
-    match loaded.scene {
-        Some(scene) => Ok((scene, loaded.warnings)),
-        None => Err(Diagnostic::error(format!("`{}` carries tests but no scene", path.display()))
+    console.warn(loaded.warnings);
+    loaded.scene.ok_or_else(|| {
+        Diagnostic::error(format!("`{}` carries tests but no scene", path.display()))
             .hint("run it with `caustica test`")
-            .into()),
-    }
+            .into()
+    })
+}
+
+/// The description made ready.
+pub fn scene(description: Description, console: &mut Console) -> Result<Scene, Failure> {
+    let (scene, warnings) = Scene::new(description)?;
+    console.warn(warnings);
+    Ok(scene)
 }

@@ -1,7 +1,9 @@
 use std::time::Duration;
 
 use caustica::Progress;
-use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::console::note;
 
 /// A progress bar on the standard error, or nothing.
 pub struct Bar(Option<ProgressBar>);
@@ -9,14 +11,17 @@ pub struct Bar(Option<ProgressBar>);
 /// Steps of the bar.
 const STEPS: u64 = 1000;
 
+/// Before this part of the work is done, the remaining time is anybody's guess.
+const GUESS: f64 = 0.001;
+
 impl Bar {
-    /// A bar, unless it is to be `hidden`.
-    pub fn new(hidden: bool) -> Self {
-        if hidden {
+    /// A bar, or nothing. Without a terminal the bar does not appear, but notes do.
+    pub fn new(shown: bool) -> Self {
+        if !shown {
             return Self(None);
         }
         let bar = ProgressBar::new(STEPS);
-        if let Ok(style) = ProgressStyle::with_template("{bar:28.cyan/blue} {msg}") {
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar:.cyan/blue}") {
             bar.set_style(style.progress_chars("━╸─"));
         }
         Self(Some(bar))
@@ -24,31 +29,18 @@ impl Bar {
 
     /// Shows how far a session is.
     pub fn show(&self, p: &Progress) {
-        let Some(bar) = &self.0 else { return };
-        bar.set_position((p.fraction * STEPS as f64) as u64);
-        let samples = if p.total == u32::MAX {
-            format!("{:.1} spp", p.samples)
-        } else {
-            format!("{:.1}/{} spp", p.samples, p.total)
-        };
-        let remaining = if p.fraction > 0.001 {
-            let seconds = p.elapsed.as_secs_f64() * (1.0 / p.fraction - 1.0);
-            format!("{} left", HumanDuration(Duration::from_secs_f64(seconds.min(1e9))))
-        } else {
-            "…".to_owned()
-        };
-        bar.set_message(format!(
-            "{:3.0}%  {samples}  {:.2} M samples/s  {}  {remaining}",
-            p.fraction * 100.0,
-            p.rate * 1e-6,
-            HumanDuration(p.elapsed),
-        ));
+        if let Some(bar) = &self.0 {
+            bar.set_position((p.fraction * STEPS as f64) as u64);
+            bar.set_message(message(p));
+        }
     }
 
     /// Says something above the bar.
     pub fn note(&self, message: &str) {
-        if let Some(bar) = &self.0 {
-            bar.println(message);
+        match &self.0 {
+            Some(bar) if bar.is_hidden() => note(format_args!("{message}\n")),
+            Some(bar) => bar.println(message),
+            None => {}
         }
     }
 
@@ -57,5 +49,59 @@ impl Bar {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();
         }
+    }
+}
+
+fn message(p: &Progress) -> String {
+    let total = if p.total == u32::MAX { String::new() } else { format!("/{}", p.total) };
+    let elapsed = p.elapsed.as_secs_f64();
+    let left =
+        if p.fraction > GUESS { duration(elapsed * (1.0 / p.fraction - 1.0)) } else { "…".to_owned() };
+    format!(
+        "{:3.0}%  {:.1}{total} spp  {:.2} M samples/s  {}, {left} left",
+        p.fraction * 100.0,
+        p.samples,
+        p.rate * 1e-6,
+        duration(elapsed),
+    )
+}
+
+/// A time in its two largest units.
+pub fn duration(seconds: f64) -> String {
+    let s = Duration::try_from_secs_f64(seconds).map_or(u64::MAX, |d| d.as_secs());
+    match (s / 86_400, s / 3600 % 24, s / 60 % 60, s % 60) {
+        (0, 0, 0, s) => format!("{s}s"),
+        (0, 0, m, s) => format!("{m}m{s:02}s"),
+        (0, h, m, _) => format!("{h}h{m:02}m"),
+        (d, _, _, _) if d > 9999 => "ages".to_owned(),
+        (d, h, _, _) => format!("{d}d{h:02}h"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_two_units() {
+        for (seconds, text) in
+            [(0.4, "0s"), (61.0, "1m01s"), (7500.0, "2h05m"), (1e5, "1d03h"), (1e30, "ages")]
+        {
+            assert_eq!(duration(seconds), text);
+        }
+    }
+
+    #[test]
+    fn messages_tell_what_is_known() {
+        let p = Progress {
+            samples: 12.5,
+            total: 50,
+            fraction: 0.25,
+            elapsed: Duration::from_secs(30),
+            rate: 2.5e6,
+        };
+        assert_eq!(message(&p), " 25%  12.5/50 spp  2.50 M samples/s  30s, 1m30s left");
+        let p = Progress { total: u32::MAX, fraction: 0.0, ..p };
+        assert_eq!(message(&p), "  0%  12.5 spp  2.50 M samples/s  30s, … left");
     }
 }

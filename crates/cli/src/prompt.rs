@@ -1,26 +1,56 @@
-use std::io::{BufRead, Write};
+use std::io::BufRead;
 
 use caustica::LightImage;
 
 use crate::args::LightImageChoice;
+use crate::console::note;
 
-/// What becomes of the light image; asks on the terminal if that is the choice. No answer means yes.
-pub fn light_image(choice: LightImageChoice) -> LightImage {
+/// What becomes of the light image; asks on the standard error if that is the choice and there is one.
+pub fn light_image(choice: LightImageChoice, there_is_one: bool) -> LightImage {
     match choice {
-        LightImageChoice::On => LightImage::On,
         LightImageChoice::Off => LightImage::Off,
         LightImageChoice::Only => LightImage::Only,
-        LightImageChoice::Ask => {
-            eprint!("Add the light image (caustics) to the picture? [Y/n/only] ");
-            // A prompt that cannot be shown can still be answered.
-            let _ = std::io::stderr().flush();
-            let mut answer = String::new();
-            let read = std::io::stdin().lock().read_line(&mut answer);
-            match answer.trim().to_ascii_lowercase().as_str() {
-                "n" | "no" | "off" if read.is_ok() => LightImage::Off,
-                "o" | "only" if read.is_ok() => LightImage::Only,
-                _ => LightImage::On,
-            }
+        LightImageChoice::Ask if there_is_one => ask(&mut std::io::stdin().lock()),
+        LightImageChoice::On | LightImageChoice::Ask => LightImage::On,
+    }
+}
+
+/// Asks until an answer is understood. No answer, or no one to answer, means yes.
+fn ask(answers: &mut impl BufRead) -> LightImage {
+    loop {
+        note("Add the light image, which holds most caustics, to the picture? [Y/n/only] ");
+        let mut answer = String::new();
+        let read = answers.read_line(&mut answer);
+        if matches!(read, Err(_) | Ok(0)) {
+            note("\n");
+            return LightImage::On;
         }
+        match answer.trim().to_ascii_lowercase().as_str() {
+            "" | "y" | "yes" | "on" => return LightImage::On,
+            "n" | "no" | "off" => return LightImage::Off,
+            "o" | "only" => return LightImage::Only,
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_are_understood_or_asked_for_again() {
+        for (answers, expected) in [
+            ("y\n", LightImage::On),
+            ("\n", LightImage::On),
+            ("", LightImage::On),
+            ("No\n", LightImage::Off),
+            ("only", LightImage::Only),
+            ("what?\nn\n", LightImage::Off),
+            ("what?", LightImage::On),
+        ] {
+            assert_eq!(ask(&mut answers.as_bytes()), expected, "{answers:?}");
+        }
+        assert_eq!(ask(&mut &b"\xff\xfe\nn\n"[..]), LightImage::On);
     }
 }

@@ -1,47 +1,44 @@
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use caustica::description::{Description, Integrator};
-use caustica::film::{Develop, check_writable, write_exr, write_png};
+use caustica::film::{self, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::session::{integrator_by_name, integrator_name};
-use caustica::{Control, LightImage, Picture, RenderOptions, Report, Scene, Session, Settings};
+use caustica::{LightImage, Picture, RenderOptions, Report, Scene, Session, Settings};
 use serde::Serialize;
 
-use crate::args::{Method, Render};
-use crate::failure::{Failure, show};
+use crate::args::{LightImageChoice, Look, Method, Render};
+use crate::console::Console;
+use crate::failure::Failure;
+use crate::interrupt::Interrupts;
+use crate::outputs::Outputs;
 use crate::progress::Bar;
 use crate::{loading, prompt, replay};
 
-/// What `--json` prints.
+/// What `--json` prints, beside warnings.
 #[derive(Serialize)]
 struct Outcome<'a> {
     #[serde(flatten)]
     report: &'a Report,
+    /// Width and height of the full picture.
+    resolution: [u32; 2],
+    /// The part of it that was rendered: x, y, width, height.
+    window: [u32; 4],
     outputs: [String; 2],
     light_image: String,
-    warnings: &'a [Diagnostic],
 }
 
-pub fn run(args: &Render) -> Result<ExitCode, Failure> {
-    let (mut description, mut warnings) = loading::description(args.scene.as_deref())?;
-    override_film(&mut description, args)?;
+pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
+    let mut description = loading::description(args.scene.as_deref(), console)?;
+    override_film(&mut description, args, console)?;
     let (asked, samples) = (description.integrator, description.samples);
-    let (scene, more) = Scene::new(description)?;
-    warnings.extend(more);
+    let scene = loading::scene(description, console)?;
     let settings = settings(&args.method, &scene, asked);
-    warnings.extend(setting_warnings(&args.method, &settings));
-    if !args.json && !args.quiet {
-        warnings.iter().for_each(show);
+    if let Some(sample) = args.replay {
+        return replay::run(&scene, settings, sample, console);
     }
-    if let Some((pixel, sample)) = args.replay {
-        return replay::run(&scene, settings, (pixel, sample), args.json);
-    }
-    let [exr, png] = outputs(args);
-    check_writable(&exr).map_err(Failure::output)?;
-    check_writable(&png).map_err(Failure::output)?;
+    let outputs = Outputs::new(args)?;
     let options = RenderOptions {
         settings,
         samples: args.spp.unwrap_or(if args.time.is_some() { u32::MAX } else { samples.max(1) }),
@@ -49,26 +46,31 @@ pub fn run(args: &Render) -> Result<ExitCode, Failure> {
         threads: args.threads.map(usize::from),
     };
     let session = Session::new(&scene, options)?;
-    let report = session.run_with_bar(args)?;
+    console.warn(setting_warnings(args, &session));
+    let interrupts = Interrupts::listen();
+    let report = run_with_bar(&session, &interrupts, console)?;
     let picture = session.film().develop();
-    let light_image = prompt::light_image(args.light_image);
-    save(&session, (&picture, light_image), &report, (args, &exr, &png))?;
-    tell(args, &report, light_image, ([&exr, &png], &warnings));
+    let light_image = save(&session, &picture, &report, (args, &outputs), &interrupts)?;
+    tell(console, (&picture, light_image), &report, &outputs)?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// `--resolution` and `--crop`.
-fn override_film(description: &mut Description, args: &Render) -> Result<(), Failure> {
-    let film = &mut description.film;
+fn override_film(d: &mut Description, args: &Render, console: &mut Console) -> Result<(), Failure> {
+    let film = &mut d.film;
     if let Some((width, height)) = args.resolution {
         (film.width, film.height) = (width, height);
-        film.crop = None;
+        if film.crop.take().is_some() && args.crop.is_none() {
+            console
+                .warn([Diagnostic::warning("the scene's crop window does not count at another resolution")
+                    .hint("choose one by `--crop`")]);
+        }
     }
     if let Some(crop) = args.crop {
         let fits = |start: u32, size: u32, full: u32| start.checked_add(size).is_some_and(|end| end <= full);
         if !fits(crop.x, crop.width, film.width) || !fits(crop.y, crop.height, film.height) {
             return Err(Failure::Usage(format!(
-                "the crop window reaches beyond the picture of {}x{} pixels",
+                "the crop window reaches beyond the picture of {} × {} pixels",
                 film.width, film.height
             )));
         }
@@ -97,111 +99,121 @@ fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
     }
 }
 
-fn setting_warnings(method: &Method, settings: &Settings) -> Option<Diagnostic> {
-    (settings.integrator != Integrator::Bdpt && !method.strategies.is_all()).then(|| {
-        Diagnostic::warning("`--strategies` has no effect: only `bdpt` has strategies to choose from")
-            .hint("add `--integrator bdpt`")
-    })
-}
-
-/// The EXR and the PNG to write.
-fn outputs(args: &Render) -> [PathBuf; 2] {
-    let stem = match (&args.output, &args.scene) {
-        (Some(output), _) => match output.extension().and_then(|e| e.to_str()) {
-            Some("exr" | "png") => output.with_extension(""),
-            _ => output.clone(),
-        },
-        (None, Some(scene)) => scene.with_extension(""),
-        (None, None) => PathBuf::from("caustica"),
-    };
-    let with = |extension: &str| {
-        let mut name = stem.clone().into_os_string();
-        name.push(extension);
-        PathBuf::from(name)
-    };
-    [with(".exr"), with(".png")]
-}
-
-/// Running a session for the command line.
-trait RunWithBar {
-    fn run_with_bar(&self, args: &Render) -> Result<Report, Failure>;
-}
-
-impl RunWithBar for Session<'_> {
-    fn run_with_bar(&self, args: &Render) -> Result<Report, Failure> {
-        let control = Arc::new(Control::default());
-        let interrupts = Arc::new(AtomicU32::new(0));
-        let handler = {
-            let (control, interrupts) = (Arc::clone(&control), Arc::clone(&interrupts));
-            ctrlc::set_handler(move || {
-                control.stop();
-                if interrupts.fetch_add(1, Ordering::SeqCst) > 0 {
-                    std::process::exit(130);
-                }
-            })
-        };
-        let bar = Bar::new(args.quiet || args.json);
-        if let Err(e) = handler {
-            bar.note(&format!("Ctrl-C will not be heard: {e}"));
-        }
-        let mut told = false;
-        let report = self.run(&control, |p| {
-            if control.is_stopped() && !told {
-                told = true;
-                bar.note("stopping after this pass; Ctrl-C again stops at once, without a picture");
-            }
-            bar.show(p);
-        })?;
-        bar.finish();
-        Ok(report)
+/// Options that do not do what was probably meant.
+fn setting_warnings(args: &Render, session: &Session<'_>) -> Vec<Diagnostic> {
+    let integrator = session.kernel().settings().integrator;
+    let name = integrator_name(&integrator);
+    let mut warnings = Vec::new();
+    if integrator != Integrator::Bdpt && !args.method.strategies.is_all() {
+        warnings.push(
+            Diagnostic::warning(format!("`--strategies` has no effect on `{name}`"))
+                .hint("only `bdpt` has strategies to choose from: add `--integrator bdpt`"),
+        );
     }
+    let black = match args.light_image {
+        LightImageChoice::Only => !session.kernel().has_light_image(),
+        LightImageChoice::Off => integrator == Integrator::Light,
+        LightImageChoice::On | LightImageChoice::Ask => false,
+    };
+    if black {
+        let image = if integrator == Integrator::Light { "eye" } else { "light" };
+        warnings.push(
+            Diagnostic::warning(format!("`{name}` makes no {image} image here: the picture will be black"))
+                .hint("use `--light-image on`"),
+        );
+    }
+    warnings
 }
 
+fn run_with_bar(
+    session: &Session<'_>,
+    interrupts: &Interrupts,
+    console: &Console,
+) -> Result<Report, Failure> {
+    let bar = Bar::new(console.is_talkative());
+    let mut told = false;
+    let report = session.run(&interrupts.control, |p| {
+        if interrupts.control.is_stopped() && !told {
+            told = true;
+            bar.note("stopping after this pass; Ctrl-C again stops at once, without a picture");
+        }
+        bar.show(p);
+    });
+    bar.finish();
+    Ok(report?)
+}
+
+/// Writes both files. The EXR holds all layers whatever becomes of the light image, so that it is written
+/// before anyone is asked: waiting for an answer must not cost the work of hours.
 fn save(
     session: &Session<'_>,
-    (picture, light_image): (&Picture, LightImage),
+    picture: &Picture,
     report: &Report,
-    (args, exr, png): (&Render, &Path, &Path),
-) -> Result<(), Failure> {
+    (args, outputs): (&Render, &Outputs),
+    interrupts: &Interrupts,
+) -> Result<LightImage, Failure> {
     let mut metadata = session.metadata(report);
     let scene = args.scene.as_deref().and_then(Path::file_name).map(|n| n.to_string_lossy().into_owned());
     metadata.set("scene", scene.unwrap_or_else(|| "built-in".to_owned()));
-    write_exr(exr, picture, light_image, &metadata).map_err(Failure::output)?;
-    let develop = Develop { exposure: args.look.exposure, tone_map: args.look.tone_map };
+    let save_exr = |light_image| {
+        write_exr(&outputs.exr, picture, light_image, &metadata).map_err(|e| Failure::output(&outputs.exr, e))
+    };
+    if args.light_image == LightImageChoice::Ask {
+        save_exr(LightImage::On)?;
+        interrupts.stop_at_once();
+    }
+    let light_image = prompt::light_image(args.light_image, picture.light_samples > 0);
+    if args.light_image != LightImageChoice::Ask || light_image != LightImage::On {
+        save_exr(light_image)?;
+    }
+    save_png(&outputs.png, picture, light_image, args.look)?;
+    Ok(light_image)
+}
+
+/// Writes what a picture looks like.
+pub fn save_png(to: &Path, picture: &Picture, light_image: LightImage, look: Look) -> Result<(), Failure> {
+    let develop = film::Develop { exposure: look.exposure, tone_map: look.tone_map };
     let window = picture.window;
-    write_png(png, window.width, window.height, &picture.combined(light_image), develop)
-        .map_err(Failure::output)
+    write_png(to, window.width, window.height, &picture.combined(light_image), develop)
+        .map_err(|e| Failure::output(to, e))
 }
 
 fn tell(
-    args: &Render,
+    console: &Console,
+    (picture, light_image): (&Picture, LightImage),
     report: &Report,
-    light_image: LightImage,
-    ([exr, png], warnings): ([&PathBuf; 2], &[Diagnostic]),
-) {
-    let outputs = [exr.display().to_string(), png.display().to_string()];
-    if args.json {
-        let outcome = Outcome { report, outputs, light_image: light_image.to_string(), warnings };
-        println!("{}", serde_json::json!(outcome));
-        return;
-    }
-    if args.quiet {
-        return;
-    }
-    println!(
-        "{}: {} samples per pixel in {:.1} s ({:.2} M samples/s on {} threads){}",
+    outputs: &Outputs,
+) -> Result<(), Failure> {
+    let w = picture.window;
+    let outcome = Outcome {
+        report,
+        resolution: [picture.width, picture.height],
+        window: [w.x, w.y, w.width, w.height],
+        outputs: [&outputs.exr, &outputs.png].map(|p| p.display().to_string()),
+        light_image: light_image.to_string(),
+    };
+    console.result(&outcome, || summary(&outcome))
+}
+
+fn summary(outcome: &Outcome<'_>) -> String {
+    let Outcome { report, outputs: [exr, png], .. } = outcome;
+    let plural = |n: u64| if n == 1 { "" } else { "s" };
+    let mut text = format!(
+        "{}: {} sample{} per pixel in {:.1} s ({:.2} M samples/s on {} thread{}){}\n",
         report.integrator,
         report.samples,
+        plural(report.samples),
         report.seconds,
         report.samples_per_second * 1e-6,
         report.threads,
+        plural(report.threads as u64),
         if report.stopped { ", stopped early" } else { "" },
     );
-    if report.invalid + report.clamped > 0 {
-        println!(
-            "{} contributions were not finite and {} too large for the film; they are left out",
-            report.invalid, report.clamped
-        );
+    if report.invalid > 0 {
+        text += &format!("{} contributions were not finite numbers and are left out\n", report.invalid);
     }
-    println!("wrote {} and {}", outputs[0], outputs[1]);
+    if report.clamped > 0 {
+        text += &format!("{} contributions were too large for the film and are cut\n", report.clamped);
+    }
+    text + &format!("wrote {exr} and {png}")
 }

@@ -1,46 +1,64 @@
+use std::fmt::{self, Write};
 use std::process::ExitCode;
 
-use caustica::session::replay::{Replay, replay};
+use caustica::session::replay::{Replay, VertexRecord, replay};
 use caustica::{Scene, Settings};
 
+use crate::console::Console;
 use crate::failure::Failure;
 
 pub fn run(
     scene: &Scene,
     settings: Settings,
     (pixel, sample): ([u32; 2], u32),
-    json: bool,
+    console: &Console,
 ) -> Result<ExitCode, Failure> {
-    if pixel[0] >= scene.film.width || pixel[1] >= scene.film.height {
+    let w = scene.film.window();
+    let inside = |at: u32, start: u32, size: u32| at >= start && at - start < size;
+    if !inside(pixel[0], w.x, w.width) || !inside(pixel[1], w.y, w.height) {
+        let [x, y] = pixel;
         return Err(Failure::Usage(format!(
-            "pixel {},{} is not in the picture of {}x{} pixels",
-            pixel[0], pixel[1], scene.film.width, scene.film.height
+            "pixel {x},{y} is not in the picture of {} × {} pixels from {},{}",
+            w.width, w.height, w.x, w.y
         )));
     }
     let record = replay(scene, settings, pixel, sample);
-    if json {
-        println!("{}", serde_json::json!(record));
-    } else {
-        print(&record);
-    }
+    // Writing to a string does not fail.
+    console.result(&record, || text(&record).unwrap_or_default())?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn print(r: &Replay) {
-    println!("pixel {},{} sample {}: eye image {:?}", r.pixel[0], r.pixel[1], r.sample, r.eye);
+fn text(r: &Replay) -> Result<String, fmt::Error> {
+    let mut t = String::new();
+    writeln!(t, "pixel {},{}, sample {}, {}", r.pixel[0], r.pixel[1], r.sample, r.integrator)?;
+    writeln!(t, "eye image    {}", rgb(r.eye))?;
     for splat in &r.splats {
-        println!("splat at {:.2},{:.2}: {:?}", splat.film[0], splat.film[1], splat.value);
+        writeln!(t, "light image  {} at {:.2}, {:.2}", rgb(splat.value), splat.film[0], splat.film[1])?;
+    }
+    if r.contributions.is_empty() {
+        let why =
+            if r.integrator == "bdpt" { "no strategy found light" } else { "only bdpt tells its strategies" };
+        writeln!(t, "{why}")?;
     }
     for c in &r.contributions {
-        println!("\n({}, {})  contribution {:?}  weight {:.6}", c.s, c.t, c.contribution, c.weight);
+        writeln!(t, "\n({}, {})  {}  × weight {:.6}", c.s, c.t, rgb(c.contribution), c.weight)?;
         for v in &c.path {
-            let place = if v.infinite { "towards" } else { "at" };
-            let [x, y, z] = v.at;
-            print!("    {:<6} {place} {x:.5} {y:.5} {z:.5}", v.kind);
-            if let (Some(forward), Some(reverse)) = (v.pdf_forward, v.pdf_reverse) {
-                print!("  pdf {forward:.4e} forward, {reverse:.4e} reverse");
-            }
-            println!("{}", if v.delta { "  Dirac" } else { "" });
+            writeln!(t, "    {}", vertex(v))?;
         }
     }
+    Ok(t)
+}
+
+fn rgb(colour: [f32; 3]) -> String {
+    format!("({})", colour.map(|c| format!("{c:?}")).join(", "))
+}
+
+fn vertex(v: &VertexRecord) -> String {
+    let place = if v.infinite { "towards" } else { "at" };
+    let at = v.at.map(|x| format!("{x:.5}")).join(", ");
+    let pdfs = match (v.pdf_forward, v.pdf_reverse) {
+        (Some(forward), Some(reverse)) => format!("  pdf {forward:.4e} forward, {reverse:.4e} reverse"),
+        _ => String::new(),
+    };
+    format!("{:<6} {place} ({at}){pdfs}{}", v.kind, if v.delta { "  Dirac" } else { "" })
 }

@@ -2,40 +2,48 @@ use std::process::ExitCode;
 
 use caustica::import;
 use caustica::scene::Diagnostic;
-use caustica::session::scene_tests::{self, TestOptions};
+use caustica::session::scene_tests::{self, Outcome, Summary, TestOptions};
+use serde::Serialize;
 
 use crate::args::Test;
-use crate::failure::{Failure, show};
+use crate::console::{Console, print};
+use crate::failure::Failure;
 
-pub fn run(args: &Test) -> Result<ExitCode, Failure> {
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Results {
+    outcomes: Vec<Outcome>,
+    #[serde(flatten)]
+    summary: Summary,
+}
+
+pub fn run(args: &Test, console: &mut Console) -> Result<ExitCode, Failure> {
     let loaded = import::load(&args.scene)?;
+    console.warn(loaded.warnings);
     if loaded.tests.is_empty() {
         return Err(Diagnostic::error(format!("`{}` carries no tests", args.scene.display()))
             .hint("tests are `<test type=\"ttest\">` and `<test type=\"chi2test\">`")
             .into());
     }
-    if !args.json {
-        loaded.warnings.iter().for_each(show);
-    }
-    let mut outcomes = Vec::new();
-    let summary = scene_tests::run(&loaded.tests, &TestOptions { seed: args.seed }, &mut |outcome| {
-        if !args.json {
-            println!("{}  {}: {}", if outcome.passed { "ok  " } else { "FAIL" }, outcome.name, outcome.detail);
+    let options = TestOptions { seed: args.seed, threads: args.threads.map(usize::from) };
+    let (mut outcomes, mut printed) = (Vec::new(), Ok(()));
+    let summary = scene_tests::run(&loaded.tests, &options, &mut |outcome| {
+        if console.is_talkative() && printed.is_ok() {
+            printed = print(line(outcome));
         }
         outcomes.push(outcome.clone());
     });
-    if args.json {
-        println!(
-            "{}",
-            serde_json::json!({
-                "outcomes": outcomes,
-                "passed": summary.passed,
-                "failed": summary.failed,
-                "warnings": loaded.warnings,
-            })
-        );
-    } else {
-        println!("{} passed, {} failed", summary.passed, summary.failed);
-    }
+    printed?;
+    let results = Results { outcomes, summary };
+    console.result(&results, || format!("{} passed, {} failed", summary.passed, summary.failed))?;
     Ok(if summary.failed == 0 { ExitCode::SUCCESS } else { ExitCode::from(1) })
+}
+
+/// An outcome; where it failed, with its place in the file.
+fn line(outcome: &Outcome) -> String {
+    let Outcome { name, passed, detail, origin } = outcome;
+    match origin {
+        Some(origin) if !passed => format!("FAIL  {name}: {detail} ({origin})"),
+        _ => format!("{}  {name}: {detail}", if *passed { "ok  " } else { "FAIL" }),
+    }
 }

@@ -135,6 +135,17 @@ impl Film {
     /// The same into a thread's own buffer, which [`Film::flush`] adds to the film.
     #[inline]
     pub fn splat_into(&self, buffer: &mut LightBuffer, filter: &PixelFilter, position: Vec2, value: Rgb) {
+        // A splat is as many cache misses as it has rows. Asking for all of them first lets them overlap.
+        let window = self.layout.window;
+        let columns = reach(position.x, filter.radius(), window.x, window.width);
+        if let (Some(first), Some(last)) = (columns.clone().next(), columns.last()) {
+            for y in reach(position.y, filter.radius(), window.y, window.height) {
+                let start = (y - window.y) as usize * window.width as usize;
+                for x in [first, last] {
+                    std::hint::black_box(buffer.sums[start + (x - window.x) as usize][0]);
+                }
+            }
+        }
         self.splat(filter, position, value, |index, counts| {
             for (sum, count) in buffer.sums[index].iter_mut().zip(counts) {
                 *sum = sum.wrapping_add(count);

@@ -1,7 +1,7 @@
 //! What was loaded.
 
+use caustica_scene::Scene;
 use caustica_scene::description::{CameraKind, Description, Geometry, LightKind, MaterialKind};
-use caustica_scene::{Diagnostic, Scene};
 use serde::Serialize;
 
 use crate::names::integrator_name;
@@ -11,6 +11,8 @@ use crate::names::integrator_name;
 pub struct SceneInfo {
     /// Width and height of the full picture.
     pub resolution: [u32; 2],
+    /// The part of it that is rendered, if that is not all: x, y, width, height.
+    pub crop: Option<[u32; 4]>,
     /// The kind of camera.
     pub camera: &'static str,
     /// The integrator that the scene asks for.
@@ -33,8 +35,6 @@ pub struct SceneInfo {
     pub bounds: Option<[[f32; 3]; 2]>,
     /// Bytes of the tree, the surfaces and the images.
     pub memory: Memory,
-    /// What is suspicious.
-    pub warnings: Vec<Diagnostic>,
 }
 
 /// Where memory goes, in bytes.
@@ -85,12 +85,13 @@ pub fn outline(d: &Description) -> Outline {
 }
 
 /// Describes a scene; `outline` is of the description that it was made from.
-pub fn describe(scene: &Scene, outline: Outline, warnings: Vec<Diagnostic>) -> SceneInfo {
+pub fn describe(scene: &Scene, outline: Outline) -> SceneInfo {
     let bounds = scene.bvh().bounds();
     let window = scene.film.window();
     let pixels: usize = scene.images().iter().map(|i| size_of_val(&*i.pixels)).sum();
     SceneInfo {
         resolution: [scene.film.width, scene.film.height],
+        crop: scene.film.crop.map(|c| [c.x, c.y, c.width, c.height]),
         camera: outline.camera,
         integrator: outline.integrator,
         samples: outline.samples,
@@ -107,7 +108,6 @@ pub fn describe(scene: &Scene, outline: Outline, warnings: Vec<Diagnostic>) -> S
             images: pixels,
             film: window.width as usize * window.height as usize * 48,
         },
-        warnings,
     }
 }
 

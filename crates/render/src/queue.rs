@@ -1,3 +1,4 @@
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Hands out units of work in order, pass after pass, without a pause between passes; when asked to stop it
@@ -5,7 +6,19 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 #[derive(Debug)]
 pub(crate) struct Queue {
     state: Mutex<State>,
+    first: u64,
     units_per_pass: u64,
+}
+
+/// How far a queue is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct QueueProgress {
+    /// Passes done, with those before the queue's first one.
+    pub passes: f64,
+    /// Passes that the queue has added.
+    pub added: f64,
+    /// The part of all passes that is done, in [0, 1].
+    pub fraction: f64,
 }
 
 #[derive(Debug)]
@@ -16,9 +29,11 @@ struct State {
 }
 
 impl Queue {
-    pub(crate) fn new(units_per_pass: u64, passes: u64) -> Self {
-        let end = units_per_pass.saturating_mul(passes);
-        Self { state: Mutex::new(State { next: 0, end, done: 0 }), units_per_pass }
+    /// A queue of those passes.
+    pub(crate) fn new(units_per_pass: u64, passes: Range<u64>) -> Self {
+        let first = units_per_pass.saturating_mul(passes.start);
+        let end = units_per_pass.saturating_mul(passes.end).max(first);
+        Self { state: Mutex::new(State { next: first, end, done: first }), first, units_per_pass }
     }
 
     /// A worker that panicked takes the session down anyway.
@@ -44,10 +59,20 @@ impl Queue {
         state.end = state.end.min(state.next.div_ceil(self.units_per_pass) * self.units_per_pass);
     }
 
-    /// Units done, and the number at which the queue ends.
-    pub(crate) fn progress(&self) -> (u64, u64) {
-        let state = self.lock();
-        (state.done, state.end)
+    /// Whether any unit has been handed out.
+    pub(crate) fn has_begun(&self) -> bool {
+        self.lock().next > self.first
+    }
+
+    /// How far it is; whole numbers of passes once no unit is out.
+    pub(crate) fn progress(&self) -> QueueProgress {
+        let State { done, end, .. } = *self.lock();
+        let passes = |units: u64| units as f64 / self.units_per_pass as f64;
+        QueueProgress {
+            passes: passes(done),
+            added: passes(done - self.first),
+            fraction: if end == 0 { 1.0 } else { done as f64 / end as f64 },
+        }
     }
 }
 
@@ -55,29 +80,53 @@ impl Queue {
 mod tests {
     use super::*;
 
+    fn progress(q: &Queue) -> (f64, f64, f64) {
+        let QueueProgress { passes, added, fraction } = q.progress();
+        (passes, added, fraction)
+    }
+
     #[test]
     fn stopping_finishes_the_pass() {
-        let q = Queue::new(3, 10);
+        let q = Queue::new(3, 0..10);
         assert_eq!(q.next(false), Some((0, 0)));
         q.next(true);
         q.next(true);
         assert_eq!(q.next(true), Some((1, 0)));
+        assert_eq!(progress(&q), (1.0, 1.0, 0.1));
         q.stop();
         assert_eq!(q.next(true), Some((1, 1)));
         assert_eq!(q.next(true), Some((1, 2)));
         assert_eq!(q.next(true), None);
-        assert_eq!(q.progress(), (6, 6));
+        assert_eq!(progress(&q), (2.0, 2.0, 1.0));
     }
 
     #[test]
     fn stopping_before_the_start_or_between_passes_adds_nothing() {
-        let q = Queue::new(3, 10);
+        let q = Queue::new(3, 0..10);
+        assert!(!q.has_begun());
         q.stop();
         assert_eq!(q.next(false), None);
-        let q = Queue::new(1, 10);
+        assert_eq!(progress(&q), (0.0, 0.0, 1.0));
+        let q = Queue::new(1, 0..10);
         q.next(false);
+        assert!(q.has_begun());
         q.stop();
         assert_eq!(q.next(true), None);
-        assert_eq!(q.progress(), (1, 1));
+        assert_eq!(progress(&q), (1.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn later_passes_follow_earlier_ones() {
+        let q = Queue::new(2, 3..5);
+        assert!(!q.has_begun());
+        assert_eq!(q.next(false), Some((3, 0)));
+        q.next(true);
+        q.next(true);
+        q.next(true);
+        assert_eq!(q.next(true), None);
+        assert_eq!(progress(&q), (5.0, 2.0, 1.0));
+        let over = Queue::new(2, 3..1);
+        assert_eq!(over.next(false), None);
+        assert_eq!(progress(&over), (3.0, 0.0, 1.0));
     }
 }

@@ -6,9 +6,13 @@ use caustica_scene::light::Anchor;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink};
 use serde::Serialize;
 
+use crate::names::integrator_name;
+
 /// Everything that one sample found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Replay {
+    /// The integrator's name.
+    pub integrator: &'static str,
     /// The pixel.
     pub pixel: [u32; 2],
     /// The sample's index.
@@ -119,6 +123,7 @@ impl Sink for Recorder {
 /// settings is this one.
 pub fn replay(scene: &Scene, settings: Settings, pixel: [u32; 2], sample: u32) -> Replay {
     let mut recorder = Recorder(Replay {
+        integrator: integrator_name(&settings.integrator),
         pixel,
         sample,
         eye: [0.0; 3],

@@ -115,6 +115,9 @@ const MOST_BUFFERED: u64 = 128 << 20;
 /// How often progress is told.
 const TICK: Duration = Duration::from_millis(100);
 
+/// The shortest wait for the end of the time, or of a pass that outlasts it.
+const SHORTEST_TICK: Duration = Duration::from_millis(5);
+
 impl<'a> Session<'a> {
     /// A session with an empty film.
     ///
@@ -155,18 +158,17 @@ impl<'a> Session<'a> {
     }
 
     /// Renders until the samples or the time are used up, or `control` says stop; only whole passes of one
-    /// sample a pixel are counted. `progress` is called about ten times a second, on this thread.
+    /// sample a pixel are counted, and the time is enough for one at least. What is in the film already
+    /// counts: a session that was stopped goes on where it was. `progress` is called about ten times a second,
+    /// on this thread.
     ///
     /// # Errors
     /// If no worker thread can be started.
-    pub fn run(
-        &self,
-        control: &Control,
-        mut progress: impl FnMut(&Progress),
-    ) -> Result<Report, RenderError> {
+    pub fn run(&self, control: &Control, mut progress: impl FnMut(&Progress)) -> Result<Report, RenderError> {
         let start = Instant::now();
         let tiles = self.tiles();
-        let queue = Queue::new(tiles.len() as u64, u64::from(self.options.samples));
+        let first = self.samples();
+        let queue = Queue::new(tiles.len() as u64, first..u64::from(self.options.samples));
         let threads = self.options.threads.unwrap_or_else(available_threads).max(1);
         let per_thread = LightBuffer::memory(self.film.layout().window.pixels());
         let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;
@@ -187,33 +189,45 @@ impl<'a> Session<'a> {
             }
             drop(sender);
             // The channel closes when all workers are done.
-            while receiver.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+            while receiver.recv_timeout(self.tick(start)) == Err(RecvTimeoutError::Timeout) {
                 let late = self.options.time.is_some_and(|t| start.elapsed() >= t);
-                if control.is_stopped() || late {
+                if control.is_stopped() || (late && queue.has_begun()) {
                     queue.stop();
                 }
-                progress(&self.progress(&queue, tiles.len(), start));
+                progress(&self.progress(&queue, start));
             }
             Ok(())
         })?;
-        progress(&self.progress(&queue, tiles.len(), start));
-        let (done, _) = queue.progress();
-        let samples = done / tiles.len() as u64;
+        progress(&self.progress(&queue, start));
+        let samples = queue.progress().passes as u64 - first;
         let eye = if self.options.settings.integrator == Integrator::Light { 0 } else { samples };
         let light = if self.kernel.has_light_image() { samples } else { 0 };
         self.film.finish_samples(eye, light);
         Ok(self.report(samples, start.elapsed(), (threads, control)))
     }
 
-    fn report(&self, samples: u64, time: Duration, (threads, control): (usize, &Control)) -> Report {
+    /// Samples per pixel in the film.
+    fn samples(&self) -> u64 {
+        self.film.eye_samples().max(self.film.light_samples())
+    }
+
+    /// How long to wait before looking at the time again.
+    fn tick(&self, start: Instant) -> Duration {
+        let left = self.options.time.map(|t| t.saturating_sub(start.elapsed())).unwrap_or(TICK);
+        left.clamp(SHORTEST_TICK, TICK)
+    }
+
+    /// The report on a run of `added` samples.
+    fn report(&self, added: u64, time: Duration, (threads, control): (usize, &Control)) -> Report {
         let seconds = time.as_secs_f64();
         let pixels = self.film.layout().window.pixels() as f64;
+        let samples = self.samples();
         Report {
             integrator: integrator_name(&self.options.settings.integrator),
             samples,
             stopped: control.is_stopped() && samples < u64::from(self.options.samples),
             seconds,
-            samples_per_second: samples as f64 * pixels / seconds.max(1e-9),
+            samples_per_second: added as f64 * pixels / seconds.max(1e-9),
             threads,
             seed: self.options.settings.seed,
             invalid: self.film.invalid(),
@@ -221,19 +235,17 @@ impl<'a> Session<'a> {
         }
     }
 
-    fn progress(&self, queue: &Queue, tiles: usize, start: Instant) -> Progress {
-        let (done, end) = queue.progress();
+    fn progress(&self, queue: &Queue, start: Instant) -> Progress {
+        let passes = queue.progress();
         let elapsed = start.elapsed();
-        let samples = done as f64 / tiles as f64;
-        let by_samples = done as f64 / end.max(1) as f64;
         let by_time = self.options.time.map_or(0.0, |t| elapsed.as_secs_f64() / t.as_secs_f64().max(1e-9));
         let pixels = self.film.layout().window.pixels() as f64;
         Progress {
-            samples,
+            samples: passes.passes,
             total: self.options.samples,
-            fraction: by_samples.max(by_time).min(1.0),
+            fraction: passes.fraction.max(by_time).min(1.0),
             elapsed,
-            rate: samples * pixels / elapsed.as_secs_f64().max(1e-9),
+            rate: passes.added * pixels / elapsed.as_secs_f64().max(1e-9),
         }
     }
 

@@ -94,11 +94,11 @@ impl Camera {
             return Err(error("the camera's far clip must lie beyond its near clip, and both be positive"));
         }
         let column = |axis| camera.to_world.vector(axis);
-        let unit =
-            |axis| column(axis).try_normalized().ok_or_else(|| error("the camera's transform flattens space"));
+        let unit = |axis| {
+            column(axis).try_normalized().ok_or_else(|| error("the camera's transform flattens space"))
+        };
         let axes = [unit(Vec3::X)?, unit(Vec3::Y)?, unit(Vec3::Z)?];
-        let [left, up, forward] = axes;
-        if left.dot(up).abs().max(up.dot(forward).abs()).max(forward.dot(left).abs()) > 1e-4 {
+        if shears(axes) {
             return Err(error("the camera's transform shears space: its axes must be at right angles"));
         }
         let width = film.width as f32;
@@ -108,7 +108,9 @@ impl Camera {
             if valid && focus.is_finite() {
                 Ok(Projection::Lens { pixel, radius, focus })
             } else {
-                Err(error("the camera's field of view must lie between 0 and 180 degrees, its lens radius be zero or more and its focus distance positive"))
+                Err(error(
+                    "the camera's field of view must lie between 0 and 180 degrees, its lens radius be zero or more and its focus distance positive",
+                ))
             }
         };
         let projection = match camera.kind {
@@ -181,8 +183,7 @@ impl Camera {
             Projection::Environment => {
                 let (sin_theta, cos_theta) = sin_cos(PI * film.y / self.height);
                 let (sin_phi, cos_phi) = sin_cos(TAU * (0.5 - film.x / self.width));
-                let direction =
-                    self.to_world(Vec3::new(sin_phi * sin_theta, cos_theta, cos_phi * sin_theta));
+                let direction = self.to_world(Vec3::new(sin_phi * sin_theta, cos_theta, cos_phi * sin_theta));
                 CameraRay {
                     point: CameraPoint { at: self.origin, infinite: false },
                     origin: self.origin + direction * self.near,
@@ -307,9 +308,8 @@ impl Camera {
         let (w, h) = (self.width, self.height);
         let rows = [film.y, -film.y, 2.0 * h - film.y];
         let columns = [0.0, w, -w, 0.5 * w, -0.5 * w, 1.5 * w];
-        let inside = move |p: &Vec2| {
-            p.x >= -margin && p.x <= w + margin && p.y >= -margin && p.y <= h + margin
-        };
+        let inside =
+            move |p: &Vec2| p.x >= -margin && p.x <= w + margin && p.y >= -margin && p.y <= h + margin;
         let candidates = rows.into_iter().enumerate().flat_map(move |(r, y)| {
             columns.into_iter().enumerate().filter_map(move |(c, dx)| {
                 // Across a pole the picture continues half a turn away.
@@ -329,6 +329,11 @@ impl Camera {
     pub fn position(&self) -> Vec3 {
         self.origin
     }
+}
+
+/// Whether three unit vectors are not at right angles.
+pub(crate) fn shears([x, y, z]: [Vec3; 3]) -> bool {
+    x.dot(y).abs().max(y.dot(z).abs()).max(z.dot(x).abs()) > 1e-4
 }
 
 /// The sine of the angle to the upper pole of a 360° picture.

@@ -4,7 +4,7 @@ use caustica_math::{Frame, Rgb, SampleStream, Spectrum, StreamId, Vec3, Waveleng
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray};
-use crate::camera::Camera;
+use crate::camera::{Camera, shears};
 use crate::description::{
     Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture,
 };
@@ -158,6 +158,9 @@ impl Scene {
                 let (Some(x), Some(y), Some(z)) = (axis(Vec3::X), axis(Vec3::Y), axis(Vec3::Z)) else {
                     return Err("the environment's transform cannot be inverted");
                 };
+                if shears([x, y, z]) {
+                    return Err("the environment's transform shears space: its axes must be at right angles");
+                }
                 let pixels = &self.images[image.0 as usize];
                 let Some(map) = EnvironmentMap::new(image.0, pixels, scale, [x, y, z]) else {
                     return Ok(None);
@@ -313,7 +316,16 @@ fn varies(texture: &Texture) -> bool {
     !matches!(texture, Texture::Constant(_))
 }
 
-/// Every id must name something.
+/// Whether the colours of a texture are finite and none is negative. (Images are looked at apart.)
+fn is_valid(texture: &Texture) -> bool {
+    match texture {
+        Texture::Constant(c) => c.is_valid(),
+        Texture::Checkerboard { value1, value2, .. } => value1.is_valid() && value2.is_valid(),
+        Texture::Image { .. } => true,
+    }
+}
+
+/// Every id must name something, and every colour be one.
 fn check_references(d: &Description) -> Result<(), Diagnostic> {
     let image_exists = |t: &Texture| match t {
         Texture::Image { image, .. } => (image.0 as usize) < d.images.len(),
@@ -323,11 +335,17 @@ fn check_references(d: &Description) -> Result<(), Diagnostic> {
         if image.width == 0 || image.height == 0 || image.pixels.len() != image.width as usize * image.height as usize {
             return Err(Diagnostic::error("an image's pixels do not match its size"));
         }
+        if !image.pixels.iter().all(|p| p.is_valid()) {
+            return Err(Diagnostic::error("an image has values that are negative or not finite"));
+        }
     }
     for m in &d.materials {
         if texture_of(&m.kind).is_some_and(|t| !image_exists(t)) {
             return Err(Diagnostic::error("a material's texture names an image that does not exist")
                 .at(m.origin.clone()));
+        }
+        if !texture_of(&m.kind).is_none_or(is_valid) {
+            return Err(Diagnostic::error("a material's colour is negative or not finite").at(m.origin.clone()));
         }
     }
     for s in &d.shapes {
@@ -337,6 +355,10 @@ fn check_references(d: &Description) -> Result<(), Diagnostic> {
                 s.name
             ))
             .at(s.origin.clone()));
+        }
+        if !s.emission.as_ref().is_none_or(is_valid) {
+            return Err(Diagnostic::error(format!("{} emits a colour that is negative or not finite", s.name))
+                .at(s.origin.clone()));
         }
     }
     for l in &d.lights {

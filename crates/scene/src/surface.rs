@@ -165,9 +165,8 @@ impl Surfaces {
         }
         flat.primitive_count = kept;
         if kept == 0 {
-            return Err(shape_error(shape, "has no triangle with an area").hint(
-                "check that the mesh file is not empty and the transform does not flatten it",
-            ));
+            return Err(shape_error(shape, "has no triangle with an area")
+                .hint("check that the mesh file is not empty and the transform does not flatten it"));
         }
         if degenerate > 0 {
             warnings.push(
@@ -187,7 +186,10 @@ impl Surfaces {
             let world = shape.to_world.point(*p);
             // Squares of coordinates must stay finite too.
             if !world.is_finite() || world.abs().max_element() > 1e15 {
-                return Err(shape_error(shape, &format!("has a vertex (number {}) that is not finite", i + 1)));
+                return Err(shape_error(
+                    shape,
+                    &format!("has a vertex (number {}) that is not finite", i + 1),
+                ));
             }
             self.positions.push(world);
         }

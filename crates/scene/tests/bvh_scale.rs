@@ -11,8 +11,7 @@ use caustica_scene::bvh::{Bvh, Ray, SphereData};
 use caustica_scene::description::{Description, Geometry, Mesh};
 use caustica_testkit::build;
 
-const TRIANGLE: [Vec3; 3] =
-    [Vec3::new(0.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
+const TRIANGLE: [Vec3; 3] = [Vec3::new(0.0, 0.0, 0.0), Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
 
 fn down_at(x: f32, y: f32) -> Ray {
     Ray { origin: Vec3::new(x, y, 1.0), direction: Vec3::new(0.0, 0.0, -1.0), t_max: f32::INFINITY }
@@ -100,7 +99,11 @@ fn a_million_triangles_take_less_than_200_megabytes() {
     let seconds = start.elapsed().as_secs_f64();
     let count = scene.surfaces().triangles().len();
     let (tree, tables) = (scene.bvh().memory(), scene.surfaces().memory());
-    println!("{count} triangles: {seconds:.2} s, tree {} MB, tables {} MB", tree / 1_000_000, tables / 1_000_000);
+    println!(
+        "{count} triangles: {seconds:.2} s, tree {} MB, tables {} MB",
+        tree / 1_000_000,
+        tables / 1_000_000
+    );
     assert!(count > 1_000_000 && tree + tables < 200_000_000, "{tree} + {tables} bytes");
 
     let start = Instant::now();

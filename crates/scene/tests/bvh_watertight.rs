@@ -13,7 +13,8 @@ use caustica_scene::{Description, Scene};
 use caustica_testkit::build;
 
 /// Scales and, in units of them, offsets of what is tested.
-const PLACES: [(f32, f32); 6] = [(1e-3, 0.0), (1.0, 0.0), (1e4, 0.0), (1e-3, 30.0), (1.0, 100.0), (1e4, 10.0)];
+const PLACES: [(f32, f32); 6] =
+    [(1e-3, 0.0), (1.0, 0.0), (1e4, 0.0), (1e-3, 30.0), (1.0, 100.0), (1e4, 10.0)];
 
 fn offset(scale: f32, distance: f32) -> Vec3 {
     Vec3::new(0.7, -1.0, 0.4) * (scale * distance)
@@ -111,10 +112,7 @@ fn bodies() -> impl Iterator<Item = (String, Scene)> {
             (format!("ball at {scale}, {distance}"), mesh(ball(16))),
             (format!("cube at {scale}, {distance}"), mesh(cube(3))),
             (format!("cube of 12 at {scale}, {distance}"), mesh(cube(1))),
-            (
-                format!("sphere at {scale}, {distance}"),
-                scene_of(Geometry::Sphere { center, radius: scale }),
-            ),
+            (format!("sphere at {scale}, {distance}"), scene_of(Geometry::Sphere { center, radius: scale })),
         ]
     })
 }

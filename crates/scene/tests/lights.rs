@@ -65,7 +65,13 @@ fn emission_carries_the_power() {
         let told = e.scene.lamps().power() / e.power;
         // Textures are only probed; that is good enough to choose by.
         let probed = e.name.contains("map") || e.name.contains("spark") || e.name.contains("textured");
-        let tolerance = if e.name.contains("spark") { 1.0 } else if probed { 0.15 } else { 1e-5 };
+        let tolerance = if e.name.contains("spark") {
+            1.0
+        } else if probed {
+            0.15
+        } else {
+            1e-5
+        };
         assert!((told - 1.0).abs() < tolerance, "{}: chosen as if it had {told} of its power", e.name);
     }
 }
@@ -104,7 +110,13 @@ fn looking_for_a_lamp_finds_its_irradiance() {
         let mut s = random(4);
         (0..40_000).for_each(|_| relative.push(towards_irradiance(&e.query(), v, &mut s) / expected));
         let p = student_t_test(&relative, 1.0);
-        assert!(p > alpha, "{} at {:?}: {} times what it should be, p = {p:e}", e.name, v.from, relative.mean);
+        assert!(
+            p > alpha,
+            "{} at {:?}: {} times what it should be, p = {p:e}",
+            e.name,
+            v.from,
+            relative.mean
+        );
         assert!(relative.variance_of_mean() < 0.03_f64.powi(2), "{} at {:?}: blunt", e.name, v.from);
     }
     assert!(known.len() > 20);
@@ -128,7 +140,10 @@ fn lamps_add_up() {
     build::light(&mut d, LightKind::Constant { radiance: grey(0.01) });
     let position = [0.0, 0.0, 3.0];
     let (inner_angle, outer_angle) = (10.0, 20.0);
-    build::light(&mut d, LightKind::Spot { position, direction, intensity: grey(2.0), inner_angle, outer_angle });
+    build::light(
+        &mut d,
+        LightKind::Spot { position, direction, intensity: grey(2.0), inner_angle, outer_angle },
+    );
     let view = View { from: Default::default(), normal: caustica_math::Vec3::Z, irradiance: None };
     let scene = |d| caustica_scene::Scene::new(d).unwrap().0;
     let mut sum = Moments::default();
@@ -138,7 +153,8 @@ fn lamps_add_up() {
         for (i, shape) in alone.shapes.iter_mut().enumerate() {
             shape.emission = shape.emission.filter(|_| i == lamp);
         }
-        alone.lights = alone.lights.into_iter().enumerate().filter(|(i, _)| i + 2 == lamp).map(|x| x.1).collect();
+        alone.lights =
+            alone.lights.into_iter().enumerate().filter(|(i, _)| i + 2 == lamp).map(|x| x.1).collect();
         let alone = scene(alone);
         assert_eq!(alone.lamps().len(), 1);
         let m = irradiance(&alone.lights(Wavelengths::Rgb), &view, 40_000);

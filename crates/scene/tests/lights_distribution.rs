@@ -15,7 +15,7 @@ const SIGNIFICANCE: f64 = 0.01;
 
 /// Fewer samples than usual: the maps' discontinuities make the integrals dear.
 fn config() -> ChiSquareConfig {
-    ChiSquareConfig { samples: 30_000, ..ChiSquareConfig::default() }
+    ChiSquareConfig { samples: 20_000, pilot: 4_000, rows: 6, columns: 8, ..ChiSquareConfig::default() }
 }
 
 /// Collects p-values and judges them together.
@@ -37,7 +37,8 @@ impl Verdict {
 /// Directions of emission, in the frame of the normal if there is one.
 fn emitted_directions(e: &Example) -> Result<f64, String> {
     let query = e.query();
-    let frame = |p: &LightPoint| if p.anchor == Anchor::Surface { Frame::from_normal(p.normal) } else { UPRIGHT };
+    let frame =
+        |p: &LightPoint| if p.anchor == Anchor::Surface { Frame::from_normal(p.normal) } else { UPRIGHT };
     let mut s = random(10);
     let any = (0..100_000).find_map(|_| query.sample_emission(s.next_1d(), s.next_2d(), s.next_2d()));
     let any = any.expect("some emission").point;
@@ -48,7 +49,11 @@ fn emitted_directions(e: &Example) -> Result<f64, String> {
     let pdf = |v: Vec3| {
         let d = frame(&any).to_world(v);
         // What carries nothing is not returned.
-        if query.radiance(&any, d).is_black() { 0.0 } else { f64::from(query.emission_pdf(&any, d).direction.0) }
+        if query.radiance(&any, d).is_black() {
+            0.0
+        } else {
+            f64::from(query.emission_pdf(&any, d).direction.0)
+        }
     };
     chi_square_sphere(e.name, &mut sample, &pdf, config())
 }
@@ -99,7 +104,7 @@ fn points_of_emission() {
     for e in examples() {
         let p = match e.anchor() {
             Anchor::Point => continue,
-            Anchor::Infinite if e.name == "directional" => continue,
+            Anchor::Infinite if e.name == "directional" || e.name.contains("turned") => continue,
             Anchor::Infinite => points_on_sphere(&e, |p| p.at, |v| LightPoint::infinite(0, v), 1.0),
             Anchor::Surface => match e.scene.surfaces().sphere(0) {
                 Some(sphere) => {
@@ -169,7 +174,10 @@ fn directions_towards_lamps() {
         for v in &e.views {
             check_told(&e, v);
             let delta = e.scene.lamps().get(0).is_delta();
-            if !delta {
+            // One map and one view of it are enough: they are the dearest.
+            let repeated =
+                e.name == "environment map" || (e.anchor() == Anchor::Infinite && v.normal.z == 0.0);
+            if !delta && !repeated {
                 verdict.add(format!("{} from {:?}", e.name, v.from), towards(&e, v));
             }
         }

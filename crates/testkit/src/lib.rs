@@ -3,5 +3,6 @@
 pub mod agreement;
 pub mod build;
 pub mod chi_square;
+pub mod known_failures;
 pub mod oracle;
 pub mod scenes;

@@ -19,7 +19,7 @@
 
 use caustica_math::{Spectrum, Vec2, Vec3, Wavelengths, warp};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::{Bsdf, Dielectric};
+use caustica_scene::bsdf::Bsdf;
 use caustica_scene::camera::{CameraLink, CameraPoint};
 use caustica_scene::light::{Anchor, EmissionPdf, LightPoint};
 use caustica_scene::surface::SurfacePoint;
@@ -44,7 +44,6 @@ fn plus(a: Vector, b: Vector, k: f64) -> Vector {
     [a[0] + k * b[0], a[1] + k * b[1], a[2] + k * b[2]]
 }
 
-/// The distance of two points.
 fn distance(a: Vector, b: Vector) -> f64 {
     let d = plus(a, b, -1.0);
     dot(d, d).sqrt()
@@ -62,6 +61,8 @@ struct Node<'a> {
     infinite: bool,
     /// Geometric normal, on a surface.
     normal: Option<Vector>,
+    /// By how much rays start off it.
+    offset: f32,
     /// What scatters there; nothing at the two ends.
     surface: Option<&'a Vertex>,
 }
@@ -108,7 +109,7 @@ struct Edge {
     /// |cos| at the end nearer to the lamp, and at the other.
     light_cos: f64,
     camera_cos: f64,
-    /// The error of its direction by rounding, and what errors cost outside of scattering.
+    /// The error of its direction, and what that costs outside of scattering.
     blur: f64,
     uncertainty: f64,
 }
@@ -117,9 +118,8 @@ impl Edge {
     fn new(a: &Node<'_>, b: &Node<'_>) -> Self {
         let (direction, falloff) = a.to(b);
         let (light_cos, camera_cos) = (a.cos(direction), b.cos(direction));
-        let size = a.at.iter().chain(&b.at).fold(0.0_f64, |m, c| m.max(c.abs()));
-        // Rays start off their surfaces, by about 1e-6 of the coordinates.
-        let blur = 2e-7 + 5e-7 * size * falloff.sqrt();
+        // A ray starts off one of the surfaces: what was traced is not quite the line between the vertices.
+        let blur = 2e-7 + f64::from(a.offset.max(b.offset)) * falloff.sqrt();
         let uncertainty = blur * (2.0 + 1.0 / light_cos + 1.0 / camera_cos);
         Self { falloff, light_cos, camera_cos, blur, uncertainty }
     }
@@ -132,7 +132,7 @@ pub struct Judgement {
     pub measured: [f64; 3],
     /// nᵢ·pᵢ(x) for i = 0 to k: a strategy's density times how often a pass tries it per pixel of the window.
     pub densities: Vec<f64>,
-    /// About how large a relative error rounding to `f32` may cause.
+    /// About how large a relative error the offsets of rays and rounding to `f32` may cause.
     pub uncertainty: f64,
 }
 
@@ -176,8 +176,8 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     let scatterings: Vec<Option<Scattering>> = (0..=k)
         .map(|j| {
             let scatter = |v| {
-                let blur = edges[j - 1].blur + edges[j].blur;
-                scatter(v, [nodes[j].to(&nodes[j - 1]).0, nodes[j].to(&nodes[j + 1]).0], blur)
+                let blurs = [edges[j - 1].blur, edges[j].blur];
+                scatter(v, [nodes[j].to(&nodes[j - 1]).0, nodes[j].to(&nodes[j + 1]).0], blurs)
             };
             nodes[j].surface.map(scatter).transpose()
         })
@@ -213,7 +213,6 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
 struct Starts {
     emission: EmissionPdf,
     next_event: f64,
-    /// Film area in pixels per solid angle or area.
     camera: f64,
     can_be_hit: bool,
 }
@@ -246,7 +245,7 @@ fn density(i: usize, scatterings: &[Option<Scattering>], edges: &[Edge], starts:
 /// The path as one list from the lamp to the camera.
 fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     let (s, t) = (c.strategy.s as usize, c.strategy.t as usize);
-    let LightPoint { anchor, at, normal, .. } = c.path.lamp;
+    let LightPoint { anchor, at, normal, offset, .. } = c.path.lamp;
     let infinite = anchor == Anchor::Infinite;
     let normal = (anchor == Anchor::Surface).then(|| wide(normal));
     let (light, mut eye) = (c.path.light, c.path.eye);
@@ -266,14 +265,14 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
         return Err("a vertex's Dirac flag is wrong".into());
     }
     let surface = |v: &'a Vertex| {
-        let SurfacePoint { position, normal, .. } = v.point;
-        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), surface: Some(v) }
+        let SurfacePoint { position, normal, offset, .. } = v.point;
+        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), offset, surface: Some(v) }
     };
     let CameraPoint { at: eye_at, infinite: parallel } = c.path.camera;
-    let mut nodes = vec![Node { at: wide(at), infinite, normal, surface: None }];
+    let mut nodes = vec![Node { at: wide(at), infinite, normal, offset, surface: None }];
     nodes.extend(light.iter().map(surface));
     nodes.extend(eye.iter().rev().map(surface));
-    nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, surface: None });
+    nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, offset: 0.0, surface: None });
     Ok(nodes)
 }
 
@@ -282,8 +281,8 @@ fn to_local(v: &Vertex, d: Vector) -> Vector {
     [dot(d, wide(f.x)), dot(d, wide(f.y)), dot(d, wide(f.z))]
 }
 
-/// Scattering at `v` from the direction `to_light` into `to_camera`, which are known to within `blur`.
-fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blur: f64) -> Result<Scattering, String> {
+/// Scattering at `v` from the direction `to_light` into `to_camera`, which are known to within `blurs`.
+fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blurs: [f64; 2]) -> Result<Scattering, String> {
     let normal = wide(v.point.normal);
     let (light, camera) = (to_local(v, to_light), to_local(v, to_camera));
     let cos_g = dot(normal, to_light);
@@ -297,16 +296,13 @@ fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blur: f64) -> Result<
             let lane = |i: usize| scale[i] * fresnel(light[2], eta[i], k[i]);
             mirror([0, 1, 2].map(lane), light, camera)
         }
-        Bsdf::Dielectric(b) => glass(*b, light, camera),
-        Bsdf::RoughDielectric(b) if v.bsdf.is_delta() => {
-            let (interior_ior, exterior_ior) = b.indices();
-            glass(Dielectric { interior_ior, exterior_ior }, light, camera)
-        }
-        b => Ok(rough(b, light, camera, blur)),
+        Bsdf::Dielectric(b) => glass((b.interior_ior, b.exterior_ior), light, camera),
+        Bsdf::RoughDielectric(b) if v.bsdf.is_delta() => glass(b.indices(), light, camera),
+        b => Ok(rough(b, light, camera, blurs[0] + blurs[1])),
     }?;
     // A refracted cosine follows from the other one, and Fresnel's equations from both.
     let shares = [light[2], camera[2]].map(|cos| if s.smooth { cos * cos } else { cos.abs() });
-    s.uncertainty += blur * (1.0 / shares[0] + 1.0 / shares[1]);
+    s.uncertainty += blurs[0] / shares[0] + blurs[1] / shares[1];
     s.value = s.value.map(|f| f / cos_g.abs());
     Ok(s)
 }
@@ -342,10 +338,10 @@ fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scatteri
 /// Refracted radiance is T·(n_c/n_l)²·L, so that f·|cos| = T·(n_c/n_l)²·δ(to_light). The light walk refracts with
 /// density T·δ(to_camera), and n²·|cos|·dω is the same on both sides, so that
 /// δ(to_camera) = δ(to_light)·dω_l/dω_c = δ(to_light)·(n_c/n_l)²·|cos_c|/|cos_l|.
-fn glass(b: Dielectric, light: Vector, camera: Vector) -> Result<Scattering, String> {
-    let index = |v: Vector| f64::from(if v[2] > 0.0 { b.exterior_ior } else { b.interior_ior });
+fn glass((interior, exterior): (f32, f32), light: Vector, camera: Vector) -> Result<Scattering, String> {
+    let index = |v: Vector| f64::from(if v[2] > 0.0 { exterior } else { interior });
     let (n_light, n_camera) = (index(light), index(camera));
-    let beyond = f64::from(b.exterior_ior) + f64::from(b.interior_ior) - n_light;
+    let beyond = f64::from(exterior) + f64::from(interior) - n_light;
     let reflectance = fresnel(light[2].abs(), beyond / n_light, 0.0);
     if light[2] * camera[2] > 0.0 {
         let upper = |v: Vector| [v[0], v[1], v[2].abs()];

@@ -87,10 +87,7 @@ fn split(references: &mut [Reference], offset: usize, depth: usize, first_sphere
             || split(right, offset + middle, depth + 1, first_sphere),
         )
     } else {
-        (
-            split(left, offset, depth + 1, first_sphere),
-            split(right, offset + middle, depth + 1, first_sphere),
-        )
+        (split(left, offset, depth + 1, first_sphere), split(right, offset + middle, depth + 1, first_sphere))
     };
     Tree::Inner { bounds, children: Box::new([a, b]) }
 }
@@ -100,8 +97,9 @@ fn median(references: &mut [Reference], bounds: &Bounds) -> usize {
     let d = bounds.max - bounds.min;
     let axis = (0..3).max_by(|a, b| d[*a].total_cmp(&d[*b])).unwrap_or(0);
     let middle = references.len() / 2;
-    references
-        .select_nth_unstable_by(middle, |a, b| a.center2(axis).total_cmp(&b.center2(axis)).then(a.id.cmp(&b.id)));
+    references.select_nth_unstable_by(middle, |a, b| {
+        a.center2(axis).total_cmp(&b.center2(axis)).then(a.id.cmp(&b.id))
+    });
     middle
 }
 
@@ -234,8 +232,14 @@ impl<F: Fn(u32) -> [Vec3; 3]> Flat<'_, F> {
 
 const EMPTY_NODE: Node = Node {
     // An inverted box is never entered: its near plane is beyond every far one.
-    bounds: [[f32::INFINITY; 4], [f32::INFINITY; 4], [f32::INFINITY; 4], [f32::NEG_INFINITY; 4],
-        [f32::NEG_INFINITY; 4], [f32::NEG_INFINITY; 4]],
+    bounds: [
+        [f32::INFINITY; 4],
+        [f32::INFINITY; 4],
+        [f32::INFINITY; 4],
+        [f32::NEG_INFINITY; 4],
+        [f32::NEG_INFINITY; 4],
+        [f32::NEG_INFINITY; 4],
+    ],
     children: [Child::NONE; 4],
 };
 

@@ -1,8 +1,8 @@
 use wide::f32x4;
 
-use super::triangle::ShearedRay;
 #[cfg(doc)]
 use super::Node;
+use super::triangle::ShearedRay;
 use super::{Bvh, Child, Hit, Ray};
 
 /// Enough for the depth that the builder allows: three siblings wait at each level.
@@ -33,7 +33,11 @@ impl SlabRay {
             let inverse = 1.0 / if parallel { f32::MIN_POSITIVE.copysign(d) } else { d };
             // A ray in the plane in which a box ends does not leave the box at once.
             let inset = if parallel { (o.abs() * f32::EPSILON).max(1e-20).copysign(d) } else { 0.0 };
-            (f32x4::splat(inverse), [f32x4::splat(o), f32x4::splat(o - inset)], if inverse < 0.0 { i + 3 } else { i })
+            (
+                f32x4::splat(inverse),
+                [f32x4::splat(o), f32x4::splat(o - inset)],
+                if inverse < 0.0 { i + 3 } else { i },
+            )
         };
         let [x, y, z] = [axis(0), axis(1), axis(2)];
         Self { inverse: [x.0, y.0, z.0], origins: [x.1, y.1, z.1], near: [x.2, y.2, z.2] }

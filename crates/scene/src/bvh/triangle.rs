@@ -30,7 +30,13 @@ impl<'a> ShearedRay<'a> {
     pub(super) fn new(ray: &Ray, slab: &'a SlabRay) -> Self {
         let d = ray.direction;
         let a = d.abs();
-        let z = if a.x > a.y { if a.x > a.z { 0 } else { 2 } } else if a.y > a.z { 1 } else { 2 };
+        let z = if a.x > a.y {
+            if a.x > a.z { 0 } else { 2 }
+        } else if a.y > a.z {
+            1
+        } else {
+            2
+        };
         let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
         if d[z] < 0.0 {
             std::mem::swap(&mut x, &mut y);
@@ -71,11 +77,8 @@ impl TriangleBlock {
         let [kx, ky, kz] = ray.axes;
         let (sx, sy, sz) =
             (f32x4::splat(ray.shear[0]), f32x4::splat(ray.shear[1]), f32x4::splat(ray.shear[2]));
-        let (ox, oy, oz) = (
-            f32x4::splat(ray.origin[kx]),
-            f32x4::splat(ray.origin[ky]),
-            f32x4::splat(ray.origin[kz]),
-        );
+        let (ox, oy, oz) =
+            (f32x4::splat(ray.origin[kx]), f32x4::splat(ray.origin[ky]), f32x4::splat(ray.origin[kz]));
         let corner = |c: &[[f32; 4]; 3]| {
             let z = f32x4::new(c[kz]) - oz;
             (f32x4::new(c[kx]) - ox - sx * z, f32x4::new(c[ky]) - oy - sy * z, z)
@@ -94,9 +97,12 @@ impl TriangleBlock {
         }
         let det = u + v + w;
         let t = sz * (u * az + v * bz + w * cz) / det;
-        let front = t.simd_gt(zero);
+        let hit = (inside & t.simd_gt(zero) & t.simd_le(f32x4::splat(t_max))).to_bitmask();
+        if hit == 0 {
+            return (0, zero, [zero; 2], zero);
+        }
         let (mask, t) = self.clip(ray, t, t_max);
-        ((inside & front).to_bitmask() & mask, t, [v, w], det)
+        (hit & mask, t, [v, w], det)
     }
 
     /// The lanes whose triangle's own box the ray meets, and which hit before `t_max`; and their distances,

@@ -58,8 +58,11 @@ impl AreaLight {
         let floor = (UNIFORM_PART * mean).max(least);
         let weights: Vec<f32> = areas.iter().zip(&means).map(|(a, m)| a * (m + floor)).collect();
         let choice = Distribution1d::new(&weights)?;
-        let density =
-            areas.iter().enumerate().map(|(i, a)| if *a > 0.0 { choice.mass(i).0 / a } else { 0.0 }).collect();
+        let density = areas
+            .iter()
+            .enumerate()
+            .map(|(i, a)| if *a > 0.0 { choice.mass(i).0 / a } else { 0.0 })
+            .collect();
         let surface = Surface::Mesh { first_primitive: first, choice, density };
         Some((Self { radiance, surface }, PI * mean.max(least) * total_area as f32))
     }
@@ -107,10 +110,8 @@ impl AreaLight {
         let direction = Frame::from_normal(p.normal).to_world(local);
         let point = LightPoint::on_surface(light, &p);
         let cos = p.normal.dot(direction);
-        let pdf = EmissionPdf {
-            point: self.area_pdf(p.primitive),
-            direction: warp::cosine_hemisphere_pdf(cos),
-        };
+        let pdf =
+            EmissionPdf { point: self.area_pdf(p.primitive), direction: warp::cosine_hemisphere_pdf(cos) };
         let origin = point.off_surface(direction);
         (cos > 0.0).then(|| Emission {
             point,
@@ -153,34 +154,44 @@ impl AreaLight {
 /// A sphere as seen from outside: a cone of directions.
 struct Cone {
     axis: Frame,
-    /// sin² of the half angle.
+    /// Distance of the centre in radii.
+    distance: f32,
+    /// sin² of the half angle, and what it lacks of one.
     sin2: f32,
+    cos2: f32,
     one_minus_cos: f32,
 }
 
 impl Cone {
-    /// `None` from inside, or so close that the cone is no better than the sphere's area.
+    /// `None` from inside, or so close that rounding of the positions hides where the sphere is.
     fn new(sphere: &SphereData, from: Vec3) -> Option<Self> {
         let to_center = sphere.center - from;
-        let sin2 = sphere.radius * sphere.radius / to_center.length_squared();
-        if sin2 > 0.99999 {
+        let exact = [0, 1, 2].map(|axis| f64::from(sphere.center[axis]) - f64::from(from[axis]));
+        let distance2: f64 = exact.iter().map(|c| c * c).sum();
+        let radius2 = f64::from(sphere.radius) * f64::from(sphere.radius);
+        // From near by, almost half of all directions meet the sphere: what lacks decides where.
+        let cos2 = ((distance2 - radius2) / distance2) as f32;
+        if cos2.is_nan() || cos2 <= 1e-5 {
             return None;
         }
-        let one_minus_cos = sin2 / (1.0 + safe_sqrt(1.0 - sin2));
-        Some(Self { axis: Frame::from_normal(to_center.normalized()), sin2, one_minus_cos })
+        let sin2 = (radius2 / distance2) as f32;
+        Some(Self {
+            axis: Frame::from_normal(to_center.normalized()),
+            distance: 1.0 / sin2.sqrt(),
+            sin2,
+            cos2,
+            one_minus_cos: sin2 / (1.0 + cos2.sqrt()),
+        })
     }
 
-    /// The normal of a visible point, uniform in solid angle (Pharr, Jakob and Humphreys, "Physically Based
-    /// Rendering", 4th ed., 6.2.4).
+    /// The normal of a visible point, uniform in solid angle.
     fn sample(&self, u: [f32; 2]) -> Vec3 {
         let d = warp::uniform_cone(u, self.one_minus_cos);
-        let sin2_theta = d.x * d.x + d.y * d.y;
-        // Angle at the sphere's centre between the axis and the point.
-        let ratio = (sin2_theta / self.sin2).min(1.0);
-        let cos_alpha = sin2_theta / self.sin2.sqrt() + d.z * safe_sqrt(1.0 - ratio);
-        let sin_alpha = safe_sqrt(1.0 - cos_alpha * cos_alpha);
-        let k = if sin2_theta > 0.0 { sin_alpha / sin2_theta.sqrt() } else { 0.0 };
-        self.axis.to_world(Vec3::new(d.x * k, d.y * k, -cos_alpha)).normalized()
+        // Where the ray enters, in units of the distance of the centre: the near root of its quadratic
+        // equation, without cancellation. (The cosine of the angle at the centre, which is the usual way,
+        // has lost most of its digits where the sphere is near.)
+        let t = self.cos2 / (d.z + safe_sqrt(self.sin2 - (d.x * d.x + d.y * d.y)));
+        self.axis.to_world(Vec3::new(t * d.x, t * d.y, t * d.z - 1.0) * self.distance).normalized()
     }
 
     /// The density at a point of the near side, per area.
@@ -188,7 +199,8 @@ impl Cone {
         debug_assert!(point.anchor == Anchor::Surface);
         let (direction, distance) = point.direction_from(from);
         let cos = -point.normal.dot(direction);
-        (cos > 0.0).then(|| AreaPdf(warp::uniform_cone_pdf(self.one_minus_cos).0 * cos / (distance * distance)))
+        (cos > 0.0)
+            .then(|| AreaPdf(warp::uniform_cone_pdf(self.one_minus_cos).0 * cos / (distance * distance)))
     }
 }
 

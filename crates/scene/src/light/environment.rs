@@ -67,7 +67,8 @@ impl EnvironmentMap {
                 flux += f64::from(luminance(row, column) * sin_theta);
             }
         }
-        let cell = TAU * PI / (w * h) as f32;
+        // The solid angle of a cell is its width times the difference of two cosines.
+        let cell = TAU / w as f32 * 2.0 * sin(0.5 * PI / h as f32);
         let flux = (flux * f64::from(cell)) as f32 * scale;
         Some(Self { image: index, scale, axes, table: Distribution2d::new(&weights, w)?, flux })
     }
@@ -103,10 +104,8 @@ impl EnvironmentLight {
             Self::Constant(_) => warp::UNIFORM_SPHERE_PDF,
             Self::Map(map) => {
                 let local = map.local(towards);
-                let sin_theta = sin_theta(local);
-                if sin_theta <= 0.0 {
-                    return SolidAnglePdf::ZERO;
-                }
+                // The pole itself has no density; keep it finite.
+                let sin_theta = sin_theta(local).max(1e-6);
                 SolidAnglePdf(map.table.pdf(direction_to_square(local)) / (TAU * PI * sin_theta))
             }
         }

@@ -86,7 +86,12 @@ impl LightQuery<'_> {
             }
             Light::Spot(l) => {
                 let direction = l.sample_direction(v);
-                from_point(index, l.position, direction, (l.intensity_in(direction), l.direction_pdf(direction)))
+                from_point(
+                    index,
+                    l.position,
+                    direction,
+                    (l.intensity_in(direction), l.direction_pdf(direction)),
+                )
             }
             Light::Directional(l) => {
                 let pdf = EmissionPdf { point: AreaPdf(1.0), direction: around.disk_pdf() };
@@ -139,8 +144,13 @@ impl LightQuery<'_> {
         let radiance = self.radiance(&point, -direction);
         let pdf = pdf * chosen.mass;
         // A place on the lamp itself has no direction to it.
-        (pdf.0 > 0.0 && distance > 0.0 && !radiance.is_black())
-            .then_some(Towards { point, direction, distance, radiance, pdf })
+        (pdf.0 > 0.0 && distance > 0.0 && !radiance.is_black()).then_some(Towards {
+            point,
+            direction,
+            distance,
+            radiance,
+            pdf,
+        })
     }
 
     /// The density with which [`LightQuery::sample_towards`] finds `point` from `from`.

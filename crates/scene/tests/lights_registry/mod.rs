@@ -164,13 +164,13 @@ fn meshes() -> Vec<Example> {
     let around = vec![view([1.0, 0.3, 0.2], [0.0; 3], None), view([0.1, 0.27, 0.0], [0.0; 3], None)];
     let area = area_of(&ball);
     vec![
+        finish("mesh", lamp(COLOUR.into(), None), PI * 2.0 * luminance(), vec![below, beside, above]),
         finish(
-            "mesh",
-            lamp(COLOUR.into(), None),
-            PI * 2.0 * luminance(),
-            vec![below, beside, above],
+            "textured mesh",
+            lamp(image, Some(steps)),
+            PI * 2.0 * 4.0,
+            vec![View { irradiance: None, ..below }, beside],
         ),
-        finish("textured mesh", lamp(image, Some(steps)), PI * 2.0 * 4.0, vec![View { irradiance: None, ..below }, beside]),
         finish("mesh with a spark", lamp(image, Some(spark)), PI * 2.0 * 500.0 / 1024.0, vec![]),
         finish("ball of triangles", ball, PI * area * luminance(), around),
     ]

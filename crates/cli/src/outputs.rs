@@ -1,0 +1,74 @@
+use std::path::{Path, PathBuf};
+
+use caustica::film::check_writable;
+
+use crate::args::Render;
+use crate::failure::Failure;
+
+/// Extensions of pictures that are not written.
+const OTHER_PICTURES: [&str; 10] = ["jpg", "jpeg", "tif", "tiff", "bmp", "gif", "webp", "hdr", "pfm", "ppm"];
+
+/// The files that a render writes.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Outputs {
+    pub exr: PathBuf,
+    pub png: PathBuf,
+}
+
+impl Outputs {
+    /// The files that the arguments ask for; both can be written.
+    pub fn new(args: &Render) -> Result<Self, Failure> {
+        let stem = match (&args.output, &args.scene) {
+            (Some(output), _) => stem(output)?,
+            (None, Some(scene)) => scene.with_extension(""),
+            (None, None) => PathBuf::from("caustica"),
+        };
+        let outputs = Self { exr: with(&stem, ".exr"), png: with(&stem, ".png") };
+        for file in [&outputs.exr, &outputs.png] {
+            check_writable(file).map_err(|e| Failure::output(file, e))?;
+        }
+        Ok(outputs)
+    }
+}
+
+/// The output without its extension, if it is a picture's.
+fn stem(output: &Path) -> Result<PathBuf, Failure> {
+    let shown = output.display();
+    let ends_in_slash = output.as_os_str().as_encoded_bytes().last().is_none_or(|b| *b == b'/');
+    if output.is_dir() || ends_in_slash || output.file_name().is_none() {
+        return Err(Failure::Output(format!("cannot write `{shown}`: it is a folder, so name a file in it")));
+    }
+    let extension = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    match extension.as_deref() {
+        Some("exr" | "png") => Ok(output.with_extension("")),
+        Some(other) if OTHER_PICTURES.contains(&other) => Err(Failure::Usage(format!(
+            "`{shown}` cannot be written: pictures are OpenEXR and PNG files, so leave out `.{other}`"
+        ))),
+        _ => Ok(output.to_owned()),
+    }
+}
+
+fn with(stem: &Path, extension: &str) -> PathBuf {
+    let mut name = stem.as_os_str().to_owned();
+    name.push(extension);
+    name.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_extensions_of_pictures_are_cut_off() {
+        for (given, expected) in
+            [("a.exr", "a"), ("a.PNG", "a"), ("b/a", "b/a"), ("a.v2", "a.v2"), ("a.v2.exr", "a.v2")]
+        {
+            assert_eq!(stem(Path::new(given)).unwrap(), PathBuf::from(expected));
+        }
+        assert_eq!(with(Path::new("a.v2"), ".exr"), PathBuf::from("a.v2.exr"));
+        assert!(matches!(stem(Path::new("a.jpg")), Err(Failure::Usage(_))));
+        for folder in ["", ".", "..", "/", "none/"] {
+            assert!(matches!(stem(Path::new(folder)), Err(Failure::Output(_))), "{folder}");
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! Every strategy alone, and every integrator, against scenes whose radiance is known exactly.
+//!
+//! In a closed diffuse enclosure of albedo ρ that emits ε, every path length has a known share: k edges bring
+//! ε·ρ^(k−1), in any direction, from anywhere. Under a point light of intensity π at the centre of a unit sphere it
+//! is ρ^(k−1) for k ≥ 2.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+use caustica_math::elementary::sin;
+use caustica_math::stats::{Moments, sidak, student_t_test};
+use caustica_math::{Rgb, Transform, Vec2};
+use caustica_scene::Description;
+use caustica_scene::description::{CameraKind, Integrator, MaterialKind, Technique};
+use caustica_testkit::agreement::flatten;
+use caustica_testkit::build::{diffuse, emit, glass, point_light, sphere};
+use caustica_testkit::scenes::{furnace, glass_kind, point_furnace};
+use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink, Strategy};
+
+/// Edges of the longest paths.
+const LONGEST: u32 = 5;
+/// Relative, for every strategy's mean.
+const TOLERANCE: f64 = 0.005;
+/// Of all strategies of a scene together.
+const SIGNIFICANCE: f64 = 1e-3;
+
+/// What adds up in a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Row {
+    /// One strategy's unweighted estimates.
+    Alone(Strategy),
+    /// All strategies' weighted estimates of paths of that many edges.
+    Together(u32),
+}
+
+impl Row {
+    fn edges(self) -> u32 {
+        match self {
+            Row::Alone(s) => s.s + s.t - 1,
+            Row::Together(k) => k,
+        }
+    }
+}
+
+/// Means over the sphere of directions of a 360° picture.
+struct Shares {
+    sums: BTreeMap<Row, f64>,
+    height: f32,
+}
+
+impl Sink for Shares {
+    const PROBES: bool = true;
+
+    fn eye(&mut self, _: Rgb) {}
+
+    fn splat(&mut self, _: Vec2, _: Rgb) {}
+
+    fn contribution(&mut self, c: &Contribution<'_>) {
+        // By the solid angle that a place on the film stands for: without this factor, splats near the poles make
+        // a heavy tail.
+        let solid_angle = f64::from(sin(std::f32::consts::PI * c.film.y / self.height)) * 0.5 * PI;
+        let value = f64::from(c.unweighted[1]) * solid_angle;
+        let mut add = |row, value| *self.sums.entry(row).or_default() += value;
+        add(Row::Alone(c.strategy), value);
+        add(Row::Together(c.strategy.s + c.strategy.t - 1), value * f64::from(c.weight));
+    }
+}
+
+fn all_around(mut d: Description) -> Description {
+    d.camera.kind = CameraKind::Environment;
+    d.camera.to_world = Transform::rotate(20.0, [1.0, 0.2, 0.0]).then(Transform::translate([0.2, -0.1, 0.3]));
+    d
+}
+
+/// Checks the share of each strategy for paths of `first` edges and more; `expected` is `None` where it must not
+/// find anything.
+fn check(name: &str, d: Description, passes: u32, first: u32, expected: &dyn Fn(Row) -> Option<f64>) {
+    let scene = flatten(all_around(d));
+    let settings = Settings { max_depth: Some(LONGEST), seed: 3, roulette_start: 3, ..Settings::default() };
+    let kernel = Kernel::new(&scene, settings);
+    let (width, height) = (scene.film.width, scene.film.height);
+    let mut scratch = Scratch::default();
+    let mut rows: BTreeMap<Row, Moments> = (first..=LONGEST)
+        .flat_map(|k| {
+            let alone = (0..=k).map(move |s| Row::Alone(Strategy { s, t: k + 1 - s }));
+            alone.chain([Row::Together(k)])
+        })
+        .filter(|row| expected(*row).is_some())
+        .map(|row| (row, Moments::default()))
+        .collect();
+    for pass in 0..passes {
+        let mut sink = Shares { sums: BTreeMap::new(), height: height as f32 };
+        for i in 0..width * height {
+            kernel.sample([i % width, i / width], pass, &mut scratch, &mut sink);
+        }
+        for row in sink.sums.keys() {
+            assert!(rows.contains_key(row), "{name}: {row:?} should not find anything");
+        }
+        for (row, moments) in &mut rows {
+            moments.push(sink.sums.get(row).copied().unwrap_or(0.0) / f64::from(width * height));
+        }
+    }
+    let alpha = sidak(SIGNIFICANCE, rows.len());
+    let mut wrong = Vec::new();
+    for (row, moments) in &rows {
+        let Some(e) = expected(*row) else { continue };
+        let p = student_t_test(moments, e);
+        println!("{name} {row:?}: {:.5} of {e:.5} ± {:.5}", moments.mean, moments.variance_of_mean().sqrt());
+        // A mean of NaN fails too.
+        if !((moments.mean / e - 1.0).abs() <= TOLERANCE) || p < alpha {
+            wrong.push(format!("{row:?}: {:.6}, expected {e:.6} (p = {p:.1e})", moments.mean));
+        }
+    }
+    assert!(wrong.is_empty(), "{name}:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_strategy_under_emission() {
+    check("furnace", furnace(), 3000, 1, &|row| Some(0.5_f64.powi(row.edges() as i32)));
+}
+
+#[test]
+fn every_strategy_under_a_point_light() {
+    for lamps in [1, 4] {
+        check("point", point_furnace(lamps), 2500, 2, &|row| match row {
+            Row::Alone(Strategy { s: 0, .. }) => None,
+            _ => Some(0.5_f64.powi(row.edges() as i32 - 1)),
+        });
+    }
+}
+
+/// Two kinds of lamps, of unequal power: s = 0 finds the walls' part, the others all.
+#[test]
+fn every_strategy_under_both() {
+    let mut d = furnace();
+    point_light(&mut d, [0.0; 3], 0.5 * std::f32::consts::PI);
+    d.shapes[0].emission = Some(Rgb::splat(0.25).into());
+    let walls = |k: u32| 0.5 * 0.5_f64.powi(k as i32);
+    let point = |k: u32| if k >= 2 { 0.5_f64.powi(k as i32) } else { 0.0 };
+    check("both", d, 4000, 1, &|row| match row {
+        Row::Alone(Strategy { s: 0, t }) => Some(walls(t - 1)),
+        Row::Alone(s) => Some(walls(s.s + s.t - 1) + point(s.s + s.t - 1)),
+        Row::Together(k) => Some(walls(k) + point(k)),
+    });
+}
+
+/// Radiance seen by each integrator that can reach it, over a 360° picture.
+fn whole(name: &str, d: Description, passes: u32, integrators: &[Integrator]) {
+    struct Whole {
+        sum: f64,
+        pixel: u32,
+        height: f32,
+    }
+    impl Whole {
+        fn solid_angle(&self, y: f32) -> f64 {
+            f64::from(sin(std::f32::consts::PI * y / self.height)) * 0.5 * PI
+        }
+    }
+    impl Sink for Whole {
+        fn eye(&mut self, value: Rgb) {
+            // The mean of sin over the row of pixels.
+            let (a, b) = (self.pixel as f32, self.pixel as f32 + 1.0);
+            let mean = |y: f32| f64::from(sin(std::f32::consts::PI * (0.5 - y / self.height)));
+            let share = (mean(a) - mean(b)) * f64::from(self.height) / PI * 0.5 * PI;
+            self.sum += f64::from(value.luminance()) * share;
+        }
+        fn splat(&mut self, film: Vec2, value: Rgb) {
+            let inside = film.y >= 0.0 && film.y < self.height;
+            if inside {
+                self.sum += f64::from(value.luminance()) * self.solid_angle(film.y);
+            }
+        }
+    }
+    let scene = flatten(all_around(d));
+    for integrator in integrators {
+        let settings = Settings { integrator: *integrator, seed: 17, ..Settings::default() };
+        let kernel = Kernel::new(&scene, settings);
+        let (width, height) = (scene.film.width, scene.film.height);
+        let (mut scratch, mut moments) = (Scratch::default(), Moments::default());
+        for pass in 0..passes {
+            let mut sink = Whole { sum: 0.0, pixel: 0, height: height as f32 };
+            for i in 0..width * height {
+                sink.pixel = i / width;
+                kernel.sample([i % width, i / width], pass, &mut scratch, &mut sink);
+            }
+            moments.push(sink.sum / f64::from(width * height));
+        }
+        let p = student_t_test(&moments, 1.0);
+        println!("{name} {integrator:?}: {:.5} ± {:.5}", moments.mean, moments.variance_of_mean().sqrt());
+        assert!(
+            (moments.mean - 1.0).abs() < 0.002 && p > SIGNIFICANCE,
+            "{name} {integrator:?}: {} (p = {p:.1e})",
+            moments.mean
+        );
+    }
+}
+
+const NAIVE: Integrator = Integrator::Path(Technique::Materials);
+const EMITTERS: Integrator = Integrator::Path(Technique::Emitters);
+const PATH: Integrator = Integrator::Path(Technique::Mis);
+
+#[test]
+fn furnaces_by_every_integrator() {
+    whole("furnace", furnace(), 3000, &[NAIVE, EMITTERS, PATH, Integrator::Light, Integrator::Bdpt]);
+    whole("point", point_furnace(1), 3000, &[EMITTERS, PATH, Integrator::Light, Integrator::Bdpt]);
+}
+
+/// Balls of what neither absorbs nor adds light leave the radiance at one.
+#[test]
+fn furnaces_with_balls() {
+    let with = |kind: MaterialKind| {
+        let mut d = furnace();
+        let m = d.add_material(kind);
+        sphere(&mut d, [0.1, 0.2, -0.4], 0.35, m);
+        d
+    };
+    let mirror = MaterialKind::Mirror { reflectance: Rgb::WHITE };
+    for (name, kind) in [("mirror", mirror), ("glass", glass_kind(false)), ("bubble", glass_kind(true))] {
+        whole(name, with(kind), 1500, &[NAIVE, EMITTERS, PATH, Integrator::Bdpt]);
+    }
+    // One in the other.
+    let mut nested = with(glass_kind(false));
+    let water = nested.add_material(MaterialKind::Dielectric { interior_ior: 1.33, exterior_ior: 1.5 });
+    sphere(&mut nested, [0.1, 0.2, -0.4], 0.25, water);
+    whole("nested", nested, 1500, &[NAIVE, PATH, Integrator::Bdpt]);
+    // One that is itself a lamp of what the walls are: diffuse, so that every integrator sees it.
+    let mut lamp = furnace();
+    let m = diffuse(&mut lamp, 0.25);
+    let ball = sphere(&mut lamp, [0.1, 0.2, -0.4], 0.35, m);
+    emit(&mut lamp, ball, 0.75);
+    whole("lamp", lamp, 2500, &[NAIVE, EMITTERS, PATH, Integrator::Light, Integrator::Bdpt]);
+}
+
+/// From inside glass of index n, radiance is n² times that outside.
+#[test]
+fn radiance_inside_glass() {
+    let mut d = furnace();
+    let m = glass(&mut d);
+    sphere(&mut d, [0.2, -0.1, 0.3], 0.3, m);
+    let scaled = |e: f32| e / 2.25;
+    d.shapes[0].emission = Some(Rgb::splat(scaled(0.5)).into());
+    whole("inside", d, 1500, &[NAIVE, EMITTERS, PATH, Integrator::Bdpt]);
+}
