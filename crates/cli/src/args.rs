@@ -53,11 +53,11 @@ impl Arguments {
 pub struct Render {
     /// Nori scene file; without it, the built-in scene of caustics is rendered
     pub scene: Option<PathBuf>,
-    /// Output file; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
+    /// Output files; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
     #[arg(short, long)]
     pub output: Option<PathBuf>,
     /// Samples per pixel [default: as the scene says, or without limit if --time is given]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: Option<u32>,
     /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
     #[arg(long, value_parser = parse_duration)]
@@ -65,20 +65,20 @@ pub struct Render {
     #[command(flatten)]
     pub method: Method,
     /// Size of the picture, such as 640x480 [default: as the scene says]
-    #[arg(long, value_parser = parse_resolution)]
+    #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<(u32, u32)>,
-    /// Render only this window: X,Y,WIDTH,HEIGHT in pixels from the upper left
-    #[arg(long, value_parser = parse_crop)]
+    /// Render only this window, in pixels from the upper left
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = parse_crop)]
     pub crop: Option<Crop>,
     /// Worker threads; the picture does not depend on it [default: all]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
     /// What becomes of the light image, which holds what light paths splat: most caustics
-    #[arg(long, value_enum, default_value_t = LightImageChoice::On)]
+    #[arg(long, value_name = "CHOICE", value_enum, default_value_t = LightImageChoice::On)]
     pub light_image: LightImageChoice,
     #[command(flatten)]
     pub look: Look,
-    /// Print one sample, strategy by strategy, instead of rendering: X,Y,SAMPLE
+    /// Print one sample of the render that the other options ask for, strategy by strategy, instead of rendering
     #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
     pub replay: Option<([u32; 2], u32)>,
     /// Say nothing but errors: no progress bar, no warnings, no summary
@@ -92,21 +92,22 @@ pub struct Render {
 /// How light is found.
 #[derive(Debug, Args)]
 pub struct Method {
-    /// Integrator [default: as the scene says]
-    #[arg(long, value_parser = integrator_names(), long_help = integrator_help())]
+    /// Integrator
+    #[arg(long, value_name = "NAME", value_parser = integrator_names(), hide_possible_values = true,
+        help = integrator_names_help(), long_help = integrator_help())]
     pub integrator: Option<String>,
     /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_depth: Option<u32>,
     /// Bounces before Russian roulette begins
-    #[arg(long, default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = 3)]
     pub roulette_depth: u32,
     /// Seed of the sample streams
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Strategies (s, t) of bdpt, with s light and t camera vertices: `s=0`, `t>=2`, `2,3`, `s>=2&t>=2`,
     /// `s=0;s=1`, `all`. What is left stays unbiased where it reaches
-    #[arg(long, default_value = "all")]
+    #[arg(long, value_name = "SET", default_value = "all")]
     pub strategies: StrategySet,
     /// How strategies are weighed
     #[arg(long, value_enum, default_value_t = HeuristicChoice::Balance)]
@@ -117,10 +118,10 @@ pub struct Method {
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Look {
     /// Exposure of the PNG in stops; 1 is twice as bright
-    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
     pub exposure: f32,
     /// Tone map of the PNG: srgb (clipped) or agx (filmic)
-    #[arg(long, default_value_t = ToneMap::Srgb)]
+    #[arg(long, value_name = "NAME", default_value_t = ToneMap::Srgb)]
     pub tone_map: ToneMap,
 }
 
@@ -132,7 +133,7 @@ pub struct Develop {
     #[arg(short, long)]
     pub output: Option<PathBuf>,
     /// What becomes of the light image
-    #[arg(long, value_enum, default_value_t = LightImageChoice::On)]
+    #[arg(long, value_name = "CHOICE", value_enum, default_value_t = LightImageChoice::On)]
     pub light_image: LightImageChoice,
     #[command(flatten)]
     pub look: Look,
@@ -152,10 +153,10 @@ pub struct Test {
     /// Nori scene file with tests
     pub scene: PathBuf,
     /// Seed of the sample streams
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     /// Worker threads; the outcome does not depend on it [default: all]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
     /// Print JSON
     #[arg(long)]
@@ -198,6 +199,11 @@ const INTEGRATOR_ALIASES: [&str; 3] = ["path_mis", "path_mats", "direct_mis"];
 fn integrator_names() -> clap::builder::PossibleValuesParser {
     let names = INTEGRATOR_NAMES.iter().map(|(name, _)| *name).chain(INTEGRATOR_ALIASES);
     clap::builder::PossibleValuesParser::new(names.collect::<Vec<_>>())
+}
+
+fn integrator_names_help() -> String {
+    let names: Vec<&str> = INTEGRATOR_NAMES.iter().map(|(name, _)| *name).collect();
+    format!("Integrator: {} [default: as the scene says]", names.join(", "))
 }
 
 fn integrator_help() -> String {

@@ -11,7 +11,7 @@ use crate::{prompt, render};
 
 pub fn run(args: &Develop, _: &Console) -> Result<ExitCode, Failure> {
     let output: PathBuf = args.output.clone().unwrap_or_else(|| args.film.with_extension("png"));
-    let to_exr = is_exr(&output)?;
+    let to_exr = args.output.as_deref().map_or(Ok(false), is_exr)?;
     let (picture, metadata) = read_exr(&args.film).map_err(|e| Failure::input(&args.film, e))?;
     check_writable(&output).map_err(|e| Failure::output(&output, e))?;
     let light_image = prompt::light_image(args.light_image, picture.light_samples > 0);

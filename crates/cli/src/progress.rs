@@ -21,7 +21,8 @@ impl Bar {
             return Self(None);
         }
         let bar = ProgressBar::new(STEPS);
-        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar:.cyan/blue}") {
+        // The end of the line is left to the `^C` that terminals echo.
+        if let Ok(style) = ProgressStyle::with_template("{bar:12.cyan/blue} {wide_msg}    ") {
             bar.set_style(style.progress_chars("━╸─"));
         }
         Self(Some(bar))
@@ -58,7 +59,7 @@ fn message(p: &Progress) -> String {
     let left =
         if p.fraction > GUESS { duration(elapsed * (1.0 / p.fraction - 1.0)) } else { "…".to_owned() };
     format!(
-        "{:3.0}%  {:.1}{total} spp  {:.2} M samples/s  {}, {left} left",
+        "{:3.0}%  {left} left  {:.1}{total} spp  {:.2} M samples/s  {} so far",
         p.fraction * 100.0,
         p.samples,
         p.rate * 1e-6,
@@ -67,7 +68,7 @@ fn message(p: &Progress) -> String {
 }
 
 /// A time in its two largest units.
-pub fn duration(seconds: f64) -> String {
+fn duration(seconds: f64) -> String {
     let s = Duration::try_from_secs_f64(seconds).map_or(u64::MAX, |d| d.as_secs());
     match (s / 86_400, s / 3600 % 24, s / 60 % 60, s % 60) {
         (0, 0, 0, s) => format!("{s}s"),
@@ -100,8 +101,8 @@ mod tests {
             elapsed: Duration::from_secs(30),
             rate: 2.5e6,
         };
-        assert_eq!(message(&p), " 25%  12.5/50 spp  2.50 M samples/s  30s, 1m30s left");
+        assert_eq!(message(&p), " 25%  1m30s left  12.5/50 spp  2.50 M samples/s  30s so far");
         let p = Progress { total: u32::MAX, fraction: 0.0, ..p };
-        assert_eq!(message(&p), "  0%  12.5 spp  2.50 M samples/s  30s, … left");
+        assert_eq!(message(&p), "  0%  … left  12.5 spp  2.50 M samples/s  30s so far");
     }
 }

@@ -1,28 +1,30 @@
-use std::io::BufRead;
+use std::io::{BufRead, Write, stderr, stdin};
 
 use caustica::LightImage;
 
 use crate::args::LightImageChoice;
-use crate::console::note;
 
 /// What becomes of the light image; asks on the standard error if that is the choice and there is one.
 pub fn light_image(choice: LightImageChoice, there_is_one: bool) -> LightImage {
     match choice {
         LightImageChoice::Off => LightImage::Off,
         LightImageChoice::Only => LightImage::Only,
-        LightImageChoice::Ask if there_is_one => ask(&mut std::io::stdin().lock()),
+        LightImageChoice::Ask if there_is_one => ask(&mut stdin().lock(), &mut stderr()),
         LightImageChoice::On | LightImageChoice::Ask => LightImage::On,
     }
 }
 
 /// Asks until an answer is understood. No answer, or no one to answer, means yes.
-fn ask(answers: &mut impl BufRead) -> LightImage {
+fn ask(answers: &mut impl BufRead, questions: &mut impl Write) -> LightImage {
     loop {
-        note("Add the light image, which holds most caustics, to the picture? [Y/n/only] ");
+        // A question that cannot be shown can still be answered.
+        let _ =
+            write!(questions, "Add the light image, which holds most caustics, to the picture? [Y/n/only] ")
+                .and_then(|()| questions.flush());
         let mut answer = String::new();
         let read = answers.read_line(&mut answer);
         if matches!(read, Err(_) | Ok(0)) {
-            note("\n");
+            let _ = writeln!(questions);
             return LightImage::On;
         }
         match answer.trim().to_ascii_lowercase().as_str() {
@@ -49,8 +51,8 @@ mod tests {
             ("what?\nn\n", LightImage::Off),
             ("what?", LightImage::On),
         ] {
-            assert_eq!(ask(&mut answers.as_bytes()), expected, "{answers:?}");
+            assert_eq!(ask(&mut answers.as_bytes(), &mut std::io::sink()), expected, "{answers:?}");
         }
-        assert_eq!(ask(&mut &b"\xff\xfe\nn\n"[..]), LightImage::On);
+        assert_eq!(ask(&mut &b"\xff\xfe\nn\n"[..], &mut std::io::sink()), LightImage::On);
     }
 }

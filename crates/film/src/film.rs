@@ -170,13 +170,7 @@ impl Film {
     }
 
     #[inline]
-    fn splat(
-        &self,
-        filter: &PixelFilter,
-        position: Vec2,
-        value: Rgb,
-        mut add: impl FnMut(usize, [i64; 3]),
-    ) {
+    fn splat(&self, filter: &PixelFilter, position: Vec2, value: Rgb, mut add: impl FnMut(usize, [i64; 3])) {
         if !(is_finite(value) && position.x.is_finite() && position.y.is_finite()) {
             self.invalid.fetch_add(1, Relaxed);
             return;

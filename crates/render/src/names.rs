@@ -43,10 +43,9 @@ pub fn integrator_by_name(name: &str, extent: f32, eye: [f32; 3], forward: [f32;
             let energy = Rgb::splat(4.0 * std::f32::consts::PI * std::f32::consts::PI * extent * extent);
             Integrator::Simple { position: eye, energy }
         }
-        "directional" => Integrator::Directional {
-            direction: forward,
-            irradiance: Rgb::splat(std::f32::consts::PI),
-        },
+        "directional" => {
+            Integrator::Directional { direction: forward, irradiance: Rgb::splat(std::f32::consts::PI) }
+        }
         _ => return None,
     })
 }

@@ -23,6 +23,7 @@ mod chi_square;
 mod parallel;
 mod t_test;
 
+use crate::session::available_threads;
 use caustica_import::{SceneTest, TestKind};
 use caustica_math::stream::mix64;
 use caustica_math::{Vec3, Wavelengths};
@@ -107,10 +108,6 @@ impl Job<'_> {
         let hint = why.hint.as_ref().map_or(String::new(), |h| format!(" ({h})"));
         self.outcome(name, why.origin.as_ref().or(origin), (false, format!("{}{hint}", why.message)))
     }
-}
-
-fn available_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// The seed of part `index` of what has the seed `seed`.

@@ -6,7 +6,7 @@ use caustica_film::{Film, FilmError, FilmLayout, LightBuffer, Metadata, Window};
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
-use caustica_transport::{Kernel, Scratch, Settings, Sink};
+use caustica_transport::{Heuristic, Kernel, Scratch, Settings, Sink};
 use serde::Serialize;
 
 use crate::names::integrator_name;
@@ -153,6 +153,8 @@ impl<'a> Session<'a> {
         m.set("seconds", format!("{:.3}", report.seconds));
         m.set("version", env!("CARGO_PKG_VERSION"));
         m.set("strategies", &settings.strategies);
+        m.set("heuristic", heuristic_name(settings.heuristic));
+        m.set("rouletteDepth", settings.roulette_start);
         m.set("maxDepth", settings.max_depth.map_or("unlimited".to_owned(), |d| d.to_string()));
         m
     }
@@ -311,8 +313,15 @@ impl Sink for FilmSink<'_, '_> {
     }
 }
 
+fn heuristic_name(heuristic: Heuristic) -> &'static str {
+    match heuristic {
+        Heuristic::Balance => "balance",
+        Heuristic::Power => "power",
+    }
+}
+
 /// How many threads the machine offers.
-fn available_threads() -> usize {
+pub(crate) fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 

@@ -5,9 +5,7 @@ use caustica_math::{Frame, Rgb, SampleStream, Spectrum, StreamId, Vec3, Waveleng
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray};
 use crate::camera::{Camera, shears};
-use crate::description::{
-    Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture,
-};
+use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
@@ -107,9 +105,7 @@ impl Scene {
                     lights.push(flat);
                     powers.push(power);
                 }
-                _ => warnings.push(
-                    Diagnostic::warning("this lamp emits nothing").at(light.origin.clone()),
-                ),
+                _ => warnings.push(Diagnostic::warning("this lamp emits nothing").at(light.origin.clone())),
             }
         }
         Ok(Lights::new(lights, &powers))
@@ -118,15 +114,22 @@ impl Scene {
     /// The lamp and its power.
     fn flatten_light(&self, kind: &LightKind, w: Wavelengths) -> Result<Option<(Light, f32)>, &'static str> {
         let around = self.surroundings(w);
-        let unit = |d: [f32; 3]| {
-            Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero")
-        };
+        let unit =
+            |d: [f32; 3]| Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero");
         let at = |p: [f32; 3]| {
             let p = Vec3::from(p);
-            if p.is_finite() && p.abs().max_element() <= 1e15 { Ok(p) } else { Err("the lamp's position must be finite") }
+            if p.is_finite() && p.abs().max_element() <= 1e15 {
+                Ok(p)
+            } else {
+                Err("the lamp's position must be finite")
+            }
         };
         let colour = |c: Rgb| {
-            if c.is_valid() { Ok(w.spectrum(c)) } else { Err("a lamp's colour must be finite and not negative") }
+            if c.is_valid() {
+                Ok(w.spectrum(c))
+            } else {
+                Err("a lamp's colour must be finite and not negative")
+            }
         };
         let full = 4.0 * std::f32::consts::PI;
         Ok(Some(match *kind {
@@ -135,7 +138,11 @@ impl Scene {
                 (Light::Point { position: at(position)?, intensity }, full * w.luminance(intensity))
             }
             LightKind::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-                if !(0.0 <= inner_angle && inner_angle <= outer_angle && outer_angle <= 180.0 && outer_angle > 0.0) {
+                if !(0.0 <= inner_angle
+                    && inner_angle <= outer_angle
+                    && outer_angle <= 180.0
+                    && outer_angle > 0.0)
+                {
                     return Err("a spot's angles must satisfy 0 ≤ inner ≤ outer ≤ 180 degrees");
                 }
                 let intensity = colour(intensity)?;
@@ -244,9 +251,8 @@ impl Scene {
             let p = self.surfaces.triangle_point(triangle, b1, b2);
             let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(stream.next_2d()));
             let ray = Ray { origin: p.off_surface(d), direction: d, t_max: f32::INFINITY };
-            self.closest(&ray).is_none_or(|q| {
-                q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits()
-            })
+            self.closest(&ray)
+                .is_none_or(|q| q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits())
         })
     }
 
@@ -276,9 +282,8 @@ impl Scene {
     }
 
     fn brightest_of(&self, description: &Description) -> f32 {
-        let of_image = |i: ImageId| {
-            self.images[i.0 as usize].pixels.iter().fold(0.0_f32, |m, p| m.max(p.max_channel()))
-        };
+        let of_image =
+            |i: ImageId| self.images[i.0 as usize].pixels.iter().fold(0.0_f32, |m, p| m.max(p.max_channel()));
         let of_texture = |t: &Texture| match t {
             Texture::Constant(c) => c.max_channel(),
             Texture::Checkerboard { value1, value2, .. } => value1.max_channel().max(value2.max_channel()),
@@ -332,7 +337,10 @@ fn check_references(d: &Description) -> Result<(), Diagnostic> {
         _ => true,
     };
     for image in &d.images {
-        if image.width == 0 || image.height == 0 || image.pixels.len() != image.width as usize * image.height as usize {
+        if image.width == 0
+            || image.height == 0
+            || image.pixels.len() != image.width as usize * image.height as usize
+        {
             return Err(Diagnostic::error("an image's pixels do not match its size"));
         }
         if !image.pixels.iter().all(|p| p.is_valid()) {
@@ -345,11 +353,14 @@ fn check_references(d: &Description) -> Result<(), Diagnostic> {
                 .at(m.origin.clone()));
         }
         if !texture_of(&m.kind).is_none_or(is_valid) {
-            return Err(Diagnostic::error("a material's colour is negative or not finite").at(m.origin.clone()));
+            return Err(
+                Diagnostic::error("a material's colour is negative or not finite").at(m.origin.clone())
+            );
         }
     }
     for s in &d.shapes {
-        if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t)) {
+        if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t))
+        {
             return Err(Diagnostic::error(format!(
                 "{} names a material or an image that does not exist",
                 s.name
@@ -357,20 +368,25 @@ fn check_references(d: &Description) -> Result<(), Diagnostic> {
             .at(s.origin.clone()));
         }
         if !s.emission.as_ref().is_none_or(is_valid) {
-            return Err(Diagnostic::error(format!("{} emits a colour that is negative or not finite", s.name))
-                .at(s.origin.clone()));
+            return Err(Diagnostic::error(format!(
+                "{} emits a colour that is negative or not finite",
+                s.name
+            ))
+            .at(s.origin.clone()));
         }
     }
     for l in &d.lights {
         if let LightKind::Environment { image, .. } = l.kind
             && image.0 as usize >= d.images.len()
         {
-            return Err(Diagnostic::error("an environment names an image that does not exist")
-                .at(l.origin.clone()));
+            return Err(
+                Diagnostic::error("an environment names an image that does not exist").at(l.origin.clone())
+            );
         }
     }
     let w = d.film.window();
-    let inside = |start: u32, size: u32, full: u32| size > 0 && start.checked_add(size).is_some_and(|e| e <= full);
+    let inside =
+        |start: u32, size: u32, full: u32| size > 0 && start.checked_add(size).is_some_and(|e| e <= full);
     if !inside(w.x, w.width, d.film.width) || !inside(w.y, w.height, d.film.height) {
         return Err(Diagnostic::error(format!(
             "the crop window {}×{} at ({}, {}) does not lie within the picture of {}×{} pixels",

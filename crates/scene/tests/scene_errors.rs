@@ -34,7 +34,7 @@ fn good() -> Description {
 fn refused(change: impl FnOnce(&mut Description)) -> String {
     let mut d = good();
     change(&mut d);
-    let e = Scene::new(d).err().expect("it is refused");
+    let e = Scene::new(d).expect_err("it is refused");
     assert_eq!(e.severity, Severity::Error);
     e.to_string()
 }

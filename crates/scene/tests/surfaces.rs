@@ -31,7 +31,7 @@ fn mesh(mesh: Mesh, to_world: Transform) -> Surfaces {
 }
 
 fn refused(geometry: Geometry, to_world: Transform) -> String {
-    flatten(geometry, to_world).err().expect("it is refused").to_string()
+    flatten(geometry, to_world).expect_err("it is refused").to_string()
 }
 
 /// A triangle in the plane z = 0 whose winding points along +z.

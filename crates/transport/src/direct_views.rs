@@ -63,9 +63,7 @@ impl Kernel<'_> {
     /// The material's answer to one directional light, with its shadow.
     fn sunlit(&self, p: &SurfacePoint, ray: &Ray, direction: Vec3, irradiance: Rgb) -> Rgb {
         let Some(towards) = (-direction).try_normalized() else { return Rgb::BLACK };
-        let Some(vertex) = Vertex::new(self.scene, *p, -ray.direction, self.wavelengths) else {
-            return Rgb::BLACK;
-        };
+        let vertex = Vertex::new(self.scene, *p, -ray.direction, self.wavelengths);
         let Some(scatter) = vertex.scatter(Walk::FromCamera, towards) else { return Rgb::BLACK };
         let arriving = self.wavelengths.spectrum(irradiance) * self.open(p, towards, f32::INFINITY);
         self.wavelengths.rgb(scatter.value * arriving)

@@ -26,9 +26,7 @@ impl Kernel<'_> {
         let first = throughput.max_lane();
         for bounce in 1..self.max_edges {
             let Some(point) = self.scene.closest(&ray) else { return };
-            let Some(vertex) = Vertex::new(self.scene, point, -ray.direction, self.wavelengths) else {
-                return;
-            };
+            let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths);
             self.splat_surface(&vertex, throughput, &mut stream, sink);
             let [u0, u1] = stream.next_2d();
             let Some((direction, s, _)) = vertex.sample(Walk::FromLight, [u0, u1, stream.next_1d()]) else {

@@ -59,9 +59,7 @@ impl Kernel<'_> {
                 sum += throughput * self.environment(&ray, &arrival, technique);
                 break;
             };
-            let Some(vertex) = Vertex::new(self.scene, point, -ray.direction, self.wavelengths) else {
-                break;
-            };
+            let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths);
             if let Some(lamp) = self.scene.lamp_at(&point) {
                 sum += throughput * self.lamp(&lamp, &ray, (&arrival, technique));
             }

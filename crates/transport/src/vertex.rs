@@ -49,15 +49,16 @@ pub struct Scatter {
 }
 
 impl Vertex {
-    /// The vertex where a ray of direction `-prev` arrives. `None` if it arrives on a side of the shading
-    /// normal that is not that of the geometric one: no light is scattered there, whichever walk asks.
+    /// The vertex where a ray of direction `-prev` arrives. If it arrives on a side of the shading normal that is
+    /// not that of the geometric one, nothing is scattered, whichever walk asks; but a lamp still shines.
     #[inline]
-    pub fn new(scene: &Scene, point: SurfacePoint, prev: Vec3, wavelengths: Wavelengths) -> Option<Self> {
-        let local_prev = point.frame.to_local(prev);
+    pub fn new(scene: &Scene, point: SurfacePoint, prev: Vec3, wavelengths: Wavelengths) -> Self {
+        let mut local_prev = point.frame.to_local(prev);
         if local_prev.z * point.normal.dot(prev) <= 0.0 {
-            return None;
+            // No BSDF scatters along the horizon.
+            local_prev.z = 0.0;
         }
-        Some(Self {
+        Self {
             bsdf: scene.bsdf(&point, wavelengths),
             point,
             prev,
@@ -68,7 +69,7 @@ impl Vertex {
             back: 0.0,
             delta: false,
             sums: RunningSums::default(),
-        })
+        }
     }
 
     /// |cos| of a direction to the geometric normal.
@@ -83,7 +84,7 @@ impl Vertex {
     pub fn scatter(&self, walk: Walk, next: Vec3) -> Option<Scatter> {
         let cos = self.point.normal.dot(next);
         let local = self.point.frame.to_local(next);
-        if cos * local.z <= 0.0 {
+        if cos * local.z <= 0.0 || self.local_prev.z == 0.0 {
             return None;
         }
         let scatter = match walk {
@@ -103,6 +104,9 @@ impl Vertex {
     /// Samples the next direction; also returns whether it came from a Dirac lobe.
     #[inline]
     pub fn sample(&self, walk: Walk, u: [f32; 3]) -> Option<(Vec3, Scatter, bool)> {
+        if self.local_prev.z == 0.0 {
+            return None;
+        }
         let s = self.bsdf.sample(walk, self.local_prev, u)?;
         let next = self.point.frame.to_world(s.direction);
         let cos = self.point.normal.dot(next);

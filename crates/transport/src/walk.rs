@@ -93,10 +93,7 @@ impl Kernel<'_> {
                 }
                 return;
             };
-            let Some(mut vertex) = Vertex::new(self.scene, point, -flight.ray.direction, self.wavelengths)
-            else {
-                return;
-            };
+            let mut vertex = Vertex::new(self.scene, point, -flight.ray.direction, self.wavelengths);
             let edge = match flight.from {
                 Some(from) => Edge::finite(point.position.distance_squared(from)),
                 None => Edge::INFINITE,

@@ -115,7 +115,6 @@ fn shading_normals() {
 
 /// A lamp with vertex normals that lean from the geometric ones emits the same however it is found.
 #[test]
-#[ignore = "fails: eye walks that meet a lamp beyond its shading horizon drop its emission"]
 fn shading_normals_of_lamps() {
     check("smooth lamp").agree(smooth_lamp(), &[Bdpt, Naive, Path, Emitters, Light]);
 }
@@ -456,14 +455,16 @@ fn irradiance() {
         let image = d.add_image(Image { width: 8, height: 4, pixels: vec![unit; 32].into() });
         build::light(d, LightKind::Environment { image, to_world: Default::default(), scale: 1.0 });
     });
-    check("map").is(map, 0.5, 0.01, &all);
+    check("map").is(map, 0.5, 0.02, &all);
     // A ball of radius r and radiance L lights a plate that it does not touch like a point of intensity πLr².
     let ball = with(&|d| {
         let m = diffuse(d, 0.0);
         let ball = sphere(d, [0.0, 1.25, 0.0], 0.4, m);
         emit(d, ball, 3.0);
     });
-    check("ball").is(ball, PI * 3.0 * 0.16 * under_a_point(1.25), 0.015, &all);
+    let expected = PI * 3.0 * 0.16 * under_a_point(1.25);
+    check("ball").is(ball.clone(), expected, 0.015, &[Bdpt, Path, Emitters, Light, Only("s=1"), Only("t=1")]);
+    check("ball").is(ball, expected, 0.05, &[Naive, Only("s=0")]);
     // The share of the light from one square that meets another, straight across at distance h: Howell, "A Catalog
     // of Radiation Heat Transfer Configuration Factors", C-11.
     let square = with(&|d| {
@@ -529,13 +530,12 @@ fn pixel_filters() {
     for filter in filters {
         let mut d = scenes::open_box();
         d.camera.kind = CameraKind::Perspective { fov: 24.0 };
-        d.film.width = 12;
-        d.film.height = 12;
+        (d.film.width, d.film.height) = (10, 10);
         let m = diffuse(&mut d, 0.2);
         let lamp = quad(&mut d, [-0.4, -0.6, 0.2], [0.0, 0.7, 0.1], [0.5, 0.2, 0.0], m);
         emit(&mut d, lamp, 3.0);
         d.film.filter = filter;
-        let check = Check { passes: 300, block: 1, depth: 2, ..check("filter") };
+        let check = Check { passes: 800, block: 1, depth: 2, ..check("filter") };
         check.agree(d, &[Path, Light, Bdpt]);
     }
 }

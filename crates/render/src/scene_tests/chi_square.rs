@@ -91,7 +91,7 @@ impl Plan {
         let figures = if o.statistic.is_infinite() {
             "samples where the density is zero, or a density that is no number".to_owned()
         } else if o.degrees == 0 {
-            "too few samples for more than one cell".to_owned()
+            "fewer than two cells expect enough samples to be compared".to_owned()
         } else {
             let [chi, p, a] = [o.statistic, o.p_value, self.alpha].map(figure);
             format!("χ² {chi}, {} degrees of freedom, p-value {p}, α {a}", o.degrees)

@@ -53,7 +53,11 @@ impl Soup {
         let triangle = |i: usize| {
             let (a, b) = (in_cube(&mut s), in_cube(&mut s));
             let along = a + (b - a) * s.next_1d();
-            [a, b, if i % 4 == 0 { b } else { along + in_cube(&mut s) * of_scale(&mut s, -8.0, -3.0) }]
+            [
+                a,
+                b,
+                if i.is_multiple_of(4) { b } else { along + in_cube(&mut s) * of_scale(&mut s, -8.0, -3.0) },
+            ]
         };
         Self { corners: (0..count).map(triangle).collect(), ..Self::default() }
     }
@@ -140,7 +144,7 @@ pub fn some_ray(soup: &Soup, s: &mut SampleStream) -> Ray {
         }
     };
     if s.next_1d() < 0.5 {
-        direction = direction * of_scale(s, -10.0, 10.0);
+        direction *= of_scale(s, -10.0, 10.0);
     }
     Ray { origin, direction, t_max: f32::INFINITY }
 }

@@ -125,7 +125,7 @@ fn spheres() -> Vec<Example> {
             "sphere",
             lamp(COLOUR.into()),
             PI * area * luminance(),
-            vec![at(40.0), at(2.0), at(0.75), at(0.502), at(0.50002), inside],
+            vec![at(8.0), at(2.0), at(0.75), at(0.502), at(0.50002), inside],
         ),
         finish(
             "textured sphere",

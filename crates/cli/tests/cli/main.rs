@@ -1,0 +1,14 @@
+//! The program as its users meet it: each test writes tiny scenes and runs the binary on them.
+
+mod arguments;
+mod bad_input;
+mod bench;
+mod develop;
+mod images;
+mod info;
+mod interrupt;
+mod outputs;
+mod render;
+mod replay;
+mod scene_tests;
+mod suspicious;
