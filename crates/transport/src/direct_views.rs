@@ -53,8 +53,8 @@ impl Kernel<'_> {
         let to_light = light - p.position;
         let d2 = to_light.length_squared();
         let cos = p.frame.z.dot(to_light) / d2.sqrt();
-        // `!(cos > 0)` also holds where the light lies on the surface.
-        if !(cos > 0.0) || !self.scene.visible(p.off_surface(to_light), light) {
+        // Where the light lies on the surface there is no cosine.
+        if cos.is_nan() || cos <= 0.0 || !self.scene.visible(p.off_surface(to_light), light) {
             return Rgb::BLACK;
         }
         energy * (cos / (4.0 * PI * PI * d2))

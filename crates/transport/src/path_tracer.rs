@@ -1,7 +1,7 @@
 //! Unidirectional path tracing in its three techniques, direct light, and Whitted's chains. Written apart from
 //! the bidirectional integrator, so that the two check each other.
 
-use caustica_math::{SampleStream, Spectrum, StreamId};
+use caustica_math::{SampleStream, Spectrum, StreamId, Vec3};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::description::Technique;
@@ -16,8 +16,8 @@ use crate::vertex::Vertex;
 enum Arrival {
     /// From the camera, or by a Dirac lobe: next-event estimation could not have made this path.
     Sure,
-    /// From a vertex, by a direction of that solid-angle density.
-    Sampled { from: Vertex, pdf: f32 },
+    /// From a place, by a direction of that solid-angle density.
+    Sampled { from: Vec3, pdf: f32 },
 }
 
 /// What a path does after its first surface without Dirac lobes.
@@ -79,7 +79,11 @@ impl Kernel<'_> {
             };
             throughput *= s.value * (1.0 / s.forward.0);
             radiance_scale *= vertex.radiance_scale(direction);
-            arrival = if delta { Arrival::Sure } else { Arrival::Sampled { from: vertex, pdf: s.forward.0 } };
+            arrival = if delta {
+                Arrival::Sure
+            } else {
+                Arrival::Sampled { from: vertex.point.position, pdf: s.forward.0 }
+            };
             if edges >= self.roulette_start {
                 // Nori's rule: the throughput without the radiance scale of refraction, at most 0.99.
                 let survival = (throughput.max_lane() / radiance_scale).min(0.99);
@@ -118,10 +122,9 @@ impl Kernel<'_> {
             Technique::Materials => 1.0,
             Technique::Emitters => 0.0,
             Technique::Mis => {
-                let position = from.point.position;
-                let (direction, distance) = lamp.direction_from(position);
+                let (direction, distance) = lamp.direction_from(*from);
                 let hit = pdf * Edge::of_length(distance).jacobian(lamp.cos(direction));
-                let found = self.scene.lights(self.wavelengths).towards_pdf(position, lamp);
+                let found = self.scene.lights(self.wavelengths).towards_pdf(*from, lamp);
                 let (hit, found) = (self.heuristic.of(hit), self.heuristic.of(found.0));
                 hit / (hit + found)
             }

@@ -119,7 +119,7 @@ pub fn exhaustive(
     let k = vertices.len();
     let joins = |i: usize| match i {
         0 => !vertices[0].delta,
-        _ => !(i > 1 && vertices[i - 1].delta) && !(i < k && vertices[i].delta),
+        _ => !(i > 1 && vertices[i - 1].delta || i < k && vertices[i].delta),
     };
     // What strategy i's density has beside the plain products.
     let special = |i: usize| {

@@ -1,0 +1,90 @@
+//! s ≥ 2, t ≥ 2: inner connections.
+
+use caustica_math::Spectrum;
+use caustica_scene::bsdf::Walk;
+
+use super::{Joined, Junction, Sample};
+use crate::edge::Edge;
+use crate::kernel::Kernel;
+use crate::sink::Sink;
+use crate::strategy::Strategy;
+use crate::vertex::{Scatter, Vertex};
+use crate::weight::weight;
+
+impl Kernel<'_> {
+    /// s ≥ 2, t ≥ 2: every light vertex with every eye vertex.
+    pub(super) fn connections<S: Sink>(&self, sample: &Sample<'_>, sink: &mut S) -> Spectrum {
+        let mut sum = Spectrum::ZERO;
+        let (eye, light) = (sample.eye, sample.light);
+        for (i, z) in eye.vertices.iter().enumerate() {
+            if !z.is_connectible() {
+                continue;
+            }
+            for (j, y) in light.vertices.iter().enumerate() {
+                // Edges: i + 1 of the eye path, j + 1 of the light path, and the one that joins.
+                if i + j + 3 > self.max_edges {
+                    break;
+                }
+                if y.is_connectible() {
+                    sum += self.connection(sample, (j + 2, i + 2), (y, z), sink).unwrap_or(Spectrum::ZERO);
+                }
+            }
+        }
+        sum
+    }
+
+    #[inline]
+    fn connection<S: Sink>(
+        &self,
+        sample: &Sample<'_>,
+        (s, t): (usize, usize),
+        (y, z): (&Vertex, &Vertex),
+        sink: &mut S,
+    ) -> Option<Spectrum> {
+        let strategy = Strategy { s: s as u32, t: t as u32 };
+        if self.exhaustive && !self.settings.strategies.contains(strategy) {
+            return None;
+        }
+        let d = z.point.position - y.point.position;
+        let length_squared = d.length_squared();
+        if length_squared <= 0.0 {
+            return None;
+        }
+        let direction = d * (1.0 / length_squared.sqrt());
+        let at_eye: Scatter = z.scatter(Walk::FromCamera, -direction)?;
+        let at_light: Scatter = y.scatter(Walk::FromLight, direction)?;
+        let edge = Edge::finite(length_squared);
+        let value = y.throughput * at_light.value * at_eye.value * z.throughput * edge.falloff;
+        if value.is_black()
+            || !self.scene.visible(y.point.off_surface(direction), z.point.off_surface(-direction))
+        {
+            return None;
+        }
+        let junction = Junction {
+            light: (at_eye.forward.0 * edge.jacobian(y.cos(direction)), at_light.reverse.0),
+            eye: (at_light.forward.0 * edge.jacobian(z.cos(direction)), at_eye.reverse.0),
+        };
+        let emission = sample.emission.as_ref()?;
+        let joined = Joined {
+            strategy,
+            lamp: emission.point,
+            emitted: emission.pdf.point.0,
+            junction,
+            value,
+            film: sample.film,
+            camera: sample.camera,
+        };
+        Some(self.finish(
+            sample,
+            &joined,
+            || {
+                let h = self.heuristic;
+                weight(
+                    y.sums.total(junction.light.0, junction.light.1, h),
+                    z.sums.total(junction.eye.0, junction.eye.1, h),
+                )
+            },
+            sink,
+        ))
+    }
+}

@@ -1,0 +1,68 @@
+//! Weights by adding up all strategies.
+
+use super::{Joined, Junction, Sample};
+use crate::kernel::Kernel;
+use crate::strategy::Strategy;
+use crate::weight::{Ends, VertexDensities, exhaustive};
+
+impl Kernel<'_> {
+    /// The weight by adding up all strategies.
+    pub(super) fn exhaustive_weight(&self, sample: &Sample<'_>, joined: &Joined) -> f32 {
+        let lights = self.scene.lights(self.wavelengths);
+        let (s, t) = (joined.strategy.s as usize, joined.strategy.t as usize);
+        let Junction { light: (light_end, before_light), eye: (eye_end, before_eye) } = joined.junction;
+        let light = &sample.light.vertices[..s.saturating_sub(1)];
+        let escaped = s == 0 && t - 1 > sample.eye.vertices.len();
+        let eye = &sample.eye.vertices[..t - 1 - usize::from(escaped)];
+        let delta_lamp = lights.lights.get(joined.lamp.light).is_delta();
+        let mut all = sample.densities.borrow_mut();
+        all.clear();
+        if s >= 1 {
+            let from_camera = match s {
+                1 => light_end,
+                2 => before_light * light[0].back,
+                _ => sample.light.origin_reverse,
+            };
+            all.push(VertexDensities { from_light: joined.emitted, from_camera, delta: delta_lamp });
+        }
+        for (j, v) in light.iter().enumerate() {
+            let last = light.len() - 1;
+            let from_camera = match last - j {
+                0 => light_end,
+                1 => before_light * light[last].back,
+                _ => v.reverse,
+            };
+            all.push(VertexDensities { from_light: v.forward, from_camera, delta: j < last && v.delta });
+        }
+        if escaped && let Some(e) = sample.eye.escape {
+            all.push(VertexDensities { from_light: eye_end, from_camera: e.forward, delta: false });
+        }
+        for (j, v) in eye.iter().enumerate().rev() {
+            // How many vertices lie between this one and the joining edge.
+            let inward = t - 2 - j;
+            let from_light = match inward {
+                0 => eye_end,
+                1 if escaped => before_eye * sample.eye.escape.map_or(0.0, |e| e.back),
+                1 => before_eye * eye[j + 1].back,
+                _ => v.reverse,
+            };
+            all.push(VertexDensities { from_light, from_camera: v.forward, delta: inward > 0 && v.delta });
+        }
+        let next_to_lamp = match (light.first(), eye.len()) {
+            (Some(v), _) => Some(v.point.position),
+            (None, n) => {
+                let skip = usize::from(s == 0 && !escaped);
+                n.checked_sub(1 + skip).map(|i| eye[i].point.position)
+            }
+        };
+        let found = next_to_lamp.map_or(0.0, |from| lights.towards_pdf(from, &joined.lamp).0);
+        let ends = Ends { next_event: found, light_paths: self.light_paths };
+        let set = &self.settings.strategies;
+        let k = (s + t - 1) as u32;
+        // A parallel projection and an environment seen directly: (1, 1) cannot join them.
+        let unjoinable = joined.camera.infinite && escaped && k == 1;
+        exhaustive(&all, ends, s, self.heuristic, |i| {
+            set.contains(Strategy { s: i as u32, t: k + 1 - i as u32 }) && !(unjoinable && i == 1)
+        })
+    }
+}
