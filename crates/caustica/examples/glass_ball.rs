@@ -1,18 +1,17 @@
-//! A glass ball and the caustic that it throws: `cargo run --release --example glass_ball -- ball`
-//! writes `ball.exr` and `ball.png`.
+//! A glass ball and its caustic: `cargo run --release -p caustica --example glass_ball -- ball` writes
+//! `ball.exr` and `ball.png`.
 
-use caustica::description::{CameraKind, Geometry, Integrator, MaterialId, MaterialKind, Mesh, Shape};
+use caustica::description::{CameraKind, Geometry, MaterialId, MaterialKind, Mesh, Shape};
 use caustica::film::{Develop, ToneMap, write_exr, write_png};
 use caustica::{Control, Description, LightImage, RenderOptions, Rgb, Scene, Session, Transform, Vec3};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let output = std::env::args().nth(1).unwrap_or_else(|| "glass_ball".to_owned());
-    render(glass_ball([640, 480]), 256, &output)
+    render(glass_ball([480, 360]), 128, &std::env::args().nth(1).unwrap_or("glass_ball".into()))
 }
 
-/// A scene of a floor, a ball of glass on it, and a small lamp above.
+/// A ball of glass on a floor, between a small warm lamp and a large cool one.
 pub fn glass_ball(size: [u32; 2]) -> Description {
-    let mut scene = Description { integrator: Integrator::Bdpt, ..Description::default() };
+    let mut scene = Description::default();
     [scene.film.width, scene.film.height] = size;
     scene.camera.kind = CameraKind::Perspective { fov: 34.0 };
     scene.camera.to_world = Transform::look_at([0.0, 2.6, -5.2], [-0.45, 0.45, 0.15], [0.0, 1.0, 0.0]);
@@ -28,8 +27,8 @@ pub fn glass_ball(size: [u32; 2]) -> Description {
     };
     add(&mut scene, "floor", Geometry::Mesh(floor), clay, None);
     add(&mut scene, "ball", ball(0.0, 0.8, 0.0, 0.8), glass, None);
-    let warm = Rgb::new(420.0, 350.0, 260.0);
-    add(&mut scene, "lamp", ball(2.6, 3.4, 0.9, 0.15), black, Some(warm));
+    add(&mut scene, "lamp", ball(2.6, 3.4, 0.9, 0.2), black, Some(Rgb::new(230.0, 195.0, 150.0)));
+    add(&mut scene, "window", ball(-5.0, 6.0, -3.0, 1.0), black, Some(Rgb::new(4.0, 6.0, 9.0)));
     scene
 }
 
@@ -55,6 +54,6 @@ pub fn render(scene: Description, samples: u32, output: &str) -> Result<(), Box<
     let (picture, on) = (session.film().develop(), LightImage::On);
     write_exr(format!("{output}.exr").as_ref(), &picture, on, &session.metadata(&report))?;
     let look = Develop { exposure: 0.0, tone_map: ToneMap::Filmic };
-    let (path, pixels) = (format!("{output}.png"), picture.combined(on));
-    Ok(write_png(path.as_ref(), picture.width, picture.height, &pixels, look)?)
+    let path = format!("{output}.png");
+    Ok(write_png(path.as_ref(), picture.width, picture.height, &picture.combined(on), look)?)
 }

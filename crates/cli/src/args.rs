@@ -99,9 +99,9 @@ pub struct Method {
     /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_depth: Option<u32>,
-    /// Bounces before Russian roulette begins
-    #[arg(long, value_name = "N", default_value_t = 3)]
-    pub roulette_depth: u32,
+    /// Bounces before Russian roulette begins [default: 1 for bdpt and light, 3 for the others]
+    #[arg(long, value_name = "N")]
+    pub roulette_depth: Option<u32>,
     /// Seed of the sample streams
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,

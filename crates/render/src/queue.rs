@@ -1,4 +1,3 @@
-use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Hands out units of work in order, pass after pass, without a pause between passes; when asked to stop it
@@ -29,10 +28,10 @@ struct State {
 }
 
 impl Queue {
-    /// A queue of those passes.
-    pub(crate) fn new(units_per_pass: u64, passes: Range<u64>) -> Self {
-        let first = units_per_pass.saturating_mul(passes.start);
-        let end = units_per_pass.saturating_mul(passes.end).max(first);
+    /// A queue of the passes from `first` up to `end`.
+    pub(crate) fn new(units_per_pass: u64, first: u64, end: u64) -> Self {
+        let first = units_per_pass.saturating_mul(first);
+        let end = units_per_pass.saturating_mul(end).max(first);
         Self { state: Mutex::new(State { next: first, end, done: first }), first, units_per_pass }
     }
 
@@ -87,7 +86,7 @@ mod tests {
 
     #[test]
     fn stopping_finishes_the_pass() {
-        let q = Queue::new(3, 0..10);
+        let q = Queue::new(3, 0, 10);
         assert_eq!(q.next(false), Some((0, 0)));
         q.next(true);
         q.next(true);
@@ -102,12 +101,12 @@ mod tests {
 
     #[test]
     fn stopping_before_the_start_or_between_passes_adds_nothing() {
-        let q = Queue::new(3, 0..10);
+        let q = Queue::new(3, 0, 10);
         assert!(!q.has_begun());
         q.stop();
         assert_eq!(q.next(false), None);
         assert_eq!(progress(&q), (0.0, 0.0, 1.0));
-        let q = Queue::new(1, 0..10);
+        let q = Queue::new(1, 0, 10);
         q.next(false);
         assert!(q.has_begun());
         q.stop();
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     fn later_passes_follow_earlier_ones() {
-        let q = Queue::new(2, 3..5);
+        let q = Queue::new(2, 3, 5);
         assert!(!q.has_begun());
         assert_eq!(q.next(false), Some((3, 0)));
         q.next(true);
@@ -125,7 +124,7 @@ mod tests {
         q.next(true);
         assert_eq!(q.next(true), None);
         assert_eq!(progress(&q), (5.0, 2.0, 1.0));
-        let over = Queue::new(2, 3..1);
+        let over = Queue::new(2, 3, 1);
         assert_eq!(over.next(false), None);
         assert_eq!(progress(&over), (3.0, 0.0, 1.0));
     }

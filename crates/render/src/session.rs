@@ -154,7 +154,7 @@ impl<'a> Session<'a> {
         m.set("version", env!("CARGO_PKG_VERSION"));
         m.set("strategies", &settings.strategies);
         m.set("heuristic", heuristic_name(settings.heuristic));
-        m.set("rouletteDepth", settings.roulette_start);
+        m.set("rouletteDepth", settings.roulette_start());
         m.set("maxDepth", settings.max_depth.map_or("unlimited".to_owned(), |d| d.to_string()));
         m
     }
@@ -170,7 +170,7 @@ impl<'a> Session<'a> {
         let start = Instant::now();
         let tiles = self.tiles();
         let first = self.samples();
-        let queue = Queue::new(tiles.len() as u64, first..u64::from(self.options.samples));
+        let queue = Queue::new(tiles.len() as u64, first, u64::from(self.options.samples));
         let threads = self.options.threads.unwrap_or_else(available_threads).max(1);
         let per_thread = LightBuffer::memory(self.film.layout().window.pixels());
         let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;

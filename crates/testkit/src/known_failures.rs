@@ -47,13 +47,14 @@ pub fn smooth_lamp() -> Description {
     d
 }
 
-/// The box with a small lamp in view, seen through a wide lens that is focused behind it.
+/// The box with a small lamp near the edge of a wide view, through a wide lens that is focused behind it.
 pub fn lamp_out_of_focus() -> Description {
     let mut d = dark_box();
     let m = diffuse(&mut d, 0.3);
-    let lamp = sphere(&mut d, [0.2, 0.1, -1.2], 0.2, m);
+    let lamp = sphere(&mut d, [0.7, 0.5, -0.6], 0.25, m);
     emit(&mut d, lamp, 6.0);
-    d.camera.kind = CameraKind::ThinLens { fov: 45.0, aperture_radius: 0.5, focus_distance: 4.0 };
+    look(&mut d, [0.0, 0.0, -1.9], [0.0; 3]);
+    d.camera.kind = CameraKind::ThinLens { fov: 90.0, aperture_radius: 0.4, focus_distance: 3.0 };
     d
 }
 
@@ -64,17 +65,16 @@ pub fn specular_chains() -> Description {
     let mirror = d.add_material(MaterialKind::Mirror { reflectance: Rgb::splat(0.9) });
     d.shapes[2].material = mirror;
     let glass = glass(&mut d);
-    pane(&mut d, [-0.8, 0.7, -0.8], [1.6, 0.0, 0.0], [0.0, 0.0, 1.6], 0.1, glass);
-    pane(&mut d, [-0.6, -0.9, -0.6], [0.0, 0.0, 1.2], [0.0, 1.2, 0.0], 0.1, glass);
+    pane(&mut d, [-0.8, 0.7, -0.8], [1.6, 0.0, 0.0], [0.0, 0.0, 1.6], glass);
+    pane(&mut d, [-0.6, -0.9, -0.6], [0.0, 0.0, 1.2], [0.0, 1.2, 0.0], glass);
     sphere(&mut d, [0.3, -0.6, 0.1], 0.35, glass);
     d
 }
 
-/// A slab of glass: the parallelogram and its copy `thickness` along its normal, with side walls left open to
-/// nothing else.
-fn pane(d: &mut Description, corner: [f32; 3], u: [f32; 3], v: [f32; 3], thickness: f32, glass: MaterialId) {
+/// A closed slab of glass on a parallelogram, a tenth thick.
+fn pane(d: &mut Description, corner: [f32; 3], u: [f32; 3], v: [f32; 3], glass: MaterialId) {
     let (p, a, b) = (Vec3::from(corner), Vec3::from(u), Vec3::from(v));
-    let n = a.cross(b).normalized() * thickness;
+    let n = a.cross(b).normalized() * 0.1;
     let corners = [p, p + a, p + a + b, p + b, p + n, p + a + n, p + a + b + n, p + b + n];
     let sides = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
     let triangles = sides.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
@@ -135,18 +135,18 @@ pub fn point_at_the_floor() -> Description {
     d
 }
 
-/// An egg and a leaning lamp, both with vertex normals, mirrored at x = 0: by a transform, or written down that
-/// way.
+/// An egg and a leaning lamp, both with vertex normals, and a lamp without, mirrored at x = 0: by a transform, or
+/// written down that way.
 pub fn mirrored(by_transform: bool) -> Description {
     let mut d = dark_box();
     let m = diffuse(&mut d, 0.8);
-    let metal =
+    let frosted =
         d.add_material(MaterialKind::RoughDielectric { alpha: 0.2, interior_ior: 1.5, exterior_ior: 1.0 });
-    let mut egg = ellipsoid(5, [0.3, 0.5, 0.4]);
-    for p in &mut egg.positions {
-        *p = *p + Vec3::new(0.35, -0.4, 0.125);
+    let mut mesh = ellipsoid(5, [0.3, 0.5, 0.4]);
+    for p in &mut mesh.positions {
+        *p += Vec3::new(0.35, -0.4, 0.125);
     }
-    let lamp = add(&mut d, "egg", Geometry::Mesh(egg), metal);
+    let egg = add(&mut d, "egg", Geometry::Mesh(mesh), frosted);
     let (x, z) = (Vec3::new(0.5, 0.25, 0.0), Vec3::new(0.0, 0.0, 0.5));
     let p = Vec3::new(-0.75, 0.5, -0.25);
     let panel = Mesh {
@@ -157,7 +157,9 @@ pub fn mirrored(by_transform: bool) -> Description {
     };
     let panel = add(&mut d, "panel", Geometry::Mesh(panel), m);
     emit(&mut d, panel, 8.0);
-    for shape in [lamp, panel] {
+    let bare = quad(&mut d, [0.875, -0.5, -0.25], [0.0, 0.0, 0.5], [0.0, 0.75, 0.0], m);
+    emit(&mut d, bare, 4.0);
+    for shape in [egg, panel, bare] {
         if by_transform {
             d.shapes[shape].to_world = Transform::scale([-1.0, 1.0, 1.0]);
         } else if let Geometry::Mesh(mesh) = &mut d.shapes[shape].geometry {
@@ -244,7 +246,7 @@ pub fn nested_interfaces() -> Description {
     // Touches the shell from inside at its lowest point.
     sphere(&mut d, [0.0, -0.4, 0.0], 0.5, inner);
     sphere(&mut d, [0.0, -0.55, 0.0], 0.3, pearl);
-    pane(&mut d, [-0.9, 0.75, -0.9], [1.8, 0.0, 0.0], [0.0, 0.0, 1.8], 0.1, outer);
+    pane(&mut d, [-0.9, 0.75, -0.9], [1.8, 0.0, 0.0], [0.0, 0.0, 1.8], outer);
     d
 }
 

@@ -19,8 +19,9 @@ pub struct Settings {
     pub integrator: Integrator,
     /// The most edges that a path may have: 1 is lamps seen directly, 2 adds direct light. `None`: no limit.
     pub max_depth: Option<u32>,
-    /// After how many bounces roulette begins.
-    pub roulette_start: u32,
+    /// After how many bounces roulette begins. `None`: at the first for `bdpt` and `light`, whose cost grows with
+    /// every pair of vertices, and at the third for the others.
+    pub roulette_start: Option<u32>,
     /// The seed of all sample streams.
     pub seed: u64,
     /// The strategies that `bdpt` uses.
@@ -37,12 +38,20 @@ impl Default for Settings {
         Self {
             integrator: Integrator::Bdpt,
             max_depth: None,
-            roulette_start: 3,
+            roulette_start: None,
             seed: 0,
             strategies: StrategySet::default(),
             heuristic: Heuristic::Balance,
             exhaustive_weights: false,
         }
+    }
+}
+
+impl Settings {
+    /// After how many bounces roulette begins, by default or as set.
+    pub fn roulette_start(&self) -> u32 {
+        let pairs = matches!(self.integrator, Integrator::Bdpt | Integrator::Light);
+        self.roulette_start.unwrap_or(if pairs { 1 } else { 3 })
     }
 }
 
@@ -103,7 +112,7 @@ impl<'a> Kernel<'a> {
             exhaustive: settings.exhaustive_weights || settings.strategies.classes().is_none(),
             heuristic: settings.heuristic,
             max_edges: settings.max_depth.unwrap_or(LONGEST_PATH).clamp(1, LONGEST_PATH) as usize,
-            roulette_start: settings.roulette_start as usize,
+            roulette_start: settings.roulette_start() as usize,
             light_paths: window.width as f32 * window.height as f32,
             wavelengths: Wavelengths::Rgb,
             settings,

@@ -82,7 +82,8 @@ impl Sink for Judge<'_> {
 /// Without roulette.
 fn settings(strategies: &str, heuristic: Heuristic, exhaustive_weights: bool) -> Settings {
     let strategies = strategies.parse().unwrap();
-    let base = Settings { max_depth: Some(DEPTH), roulette_start: 1000, seed: 7, ..Settings::default() };
+    let base =
+        Settings { max_depth: Some(DEPTH), roulette_start: Some(1000), seed: 7, ..Settings::default() };
     Settings { strategies, heuristic, exhaustive_weights, ..base }
 }
 

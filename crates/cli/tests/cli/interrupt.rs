@@ -15,24 +15,25 @@ fn interrupt(child: &Child) {
     assert!(sent.success());
 }
 
+/// Whether a process has a handler for that signal.
+fn listens(child: &Child) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
+    let caught = status.lines().find_map(|l| l.strip_prefix("SigCgt:")).unwrap();
+    u64::from_str_radix(caught.trim(), 16).unwrap() & 2 != 0
+}
+
 /// Starts a render that would take days, and returns once it listens to Ctrl-C.
 fn start(bench: &Bench, more: &[&str]) -> Child {
     let args = [&["render", "scene.xml", "--spp", "4000000000", "--threads", "1"], more].concat();
     let child = bench.command(&args).spawn().unwrap();
-    let status = format!("/proc/{}/status", child.id());
     let started = Instant::now();
-    loop {
-        let text = std::fs::read_to_string(&status).unwrap();
-        let caught = text.lines().find_map(|l| l.strip_prefix("SigCgt:")).unwrap();
-        let caught = u64::from_str_radix(caught.trim(), 16).unwrap();
-        if caught & 2 != 0 {
-            // Long enough for the first pass to begin.
-            sleep(Duration::from_millis(300));
-            return child;
-        }
+    while !listens(&child) {
         assert!(started.elapsed() < PATIENCE);
         sleep(Duration::from_millis(10));
     }
+    // Long enough for the first pass to begin.
+    sleep(Duration::from_millis(300));
+    child
 }
 
 #[test]

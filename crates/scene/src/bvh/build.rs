@@ -4,6 +4,7 @@
 use caustica_math::Vec3;
 
 use super::sphere::SphereData;
+use super::traverse::stack_for;
 use super::triangle::TriangleBlock;
 use super::{Bounds, Bvh, Child, Node};
 
@@ -51,7 +52,7 @@ pub(super) fn build(positions: &[Vec3], triangles: &[[u32; 3]], spheres: &[Spher
     );
     let bounds = references.iter().fold(Bounds::EMPTY, |b, r| b.union(r.bounds));
     let mut flat = Flat {
-        bvh: Bvh { nodes: Vec::new(), blocks: Vec::new(), spheres: Vec::new(), bounds },
+        bvh: Bvh { nodes: Vec::new(), blocks: Vec::new(), spheres: Vec::new(), bounds, stack: 0 },
         references: Vec::new(),
         corners: &corners,
         spheres,
@@ -61,8 +62,18 @@ pub(super) fn build(positions: &[Vec3], triangles: &[[u32; 3]], spheres: &[Spher
         let tree = split(&mut references, 0, 0, triangles.len());
         flat.references = references;
         flat.root(&tree);
+        flat.bvh.stack = stack_for(levels(&flat.bvh.nodes, Child::node(0)));
     }
     flat.bvh
+}
+
+/// How many nodes lie on the longest way from `child` to a leaf.
+fn levels(nodes: &[Node], child: Child) -> usize {
+    if child.is_leaf() {
+        return 0;
+    }
+    let below = nodes[child.0 as usize].children.iter().map(|c| levels(nodes, *c)).max();
+    1 + below.unwrap_or(0)
 }
 
 fn split(references: &mut [Reference], offset: usize, depth: usize, first_sphere: usize) -> Tree {

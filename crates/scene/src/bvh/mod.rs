@@ -141,6 +141,8 @@ pub struct Bvh {
     blocks: Vec<TriangleBlock>,
     spheres: Vec<(SphereData, u32)>,
     bounds: Bounds,
+    /// Entries that a stack needs to walk it.
+    stack: usize,
 }
 
 impl Bvh {

@@ -5,8 +5,36 @@ use super::Node;
 use super::triangle::ShearedRay;
 use super::{Bvh, Child, Hit, Ray};
 
-/// Enough for the depth that the builder allows: three siblings wait at each level.
-pub(super) const STACK: usize = 3 * super::build::MAX_DEPTH + 4;
+/// Entries that wait while a tree of that many levels is walked: three siblings at each.
+pub(super) const fn stack_for(levels: usize) -> usize {
+    3 * levels + 4
+}
+
+/// Enough for trees of small scenes. Clearing a stack costs time, so that shallow trees get a shallow one.
+const SMALL_STACK: usize = 32;
+
+/// Enough for the depth that the builder allows.
+const LARGE_STACK: usize = stack_for(super::build::MAX_DEPTH);
+
+/// The first hit along the ray.
+#[inline]
+pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    if bvh.stack <= SMALL_STACK {
+        closest_with::<SMALL_STACK>(bvh, ray)
+    } else {
+        closest_with::<LARGE_STACK>(bvh, ray)
+    }
+}
+
+/// Whether the ray hits anything.
+#[inline]
+pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
+    if bvh.stack <= SMALL_STACK {
+        occluded_with::<SMALL_STACK>(bvh, ray)
+    } else {
+        occluded_with::<LARGE_STACK>(bvh, ray)
+    }
+}
 
 /// A ray made ready for box tests.
 pub(super) struct SlabRay {
@@ -62,7 +90,7 @@ impl SlabRay {
     }
 }
 
-pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+fn closest_with<const STACK: usize>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let slab = SlabRay::new(ray);
     let sheared = ShearedRay::new(ray, &slab);
     let mut best: Option<Hit> = None;
@@ -137,7 +165,7 @@ fn test_leaf(bvh: &Bvh, leaf: Child, ray: &Ray, sheared: &ShearedRay<'_>, best: 
     }
 }
 
-pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
+fn occluded_with<const STACK: usize>(bvh: &Bvh, ray: &Ray) -> bool {
     let slab = SlabRay::new(ray);
     let sheared = ShearedRay::new(ray, &slab);
     let mut stack = [Child::NONE; STACK];
