@@ -74,7 +74,7 @@ impl Film {
             megabytes: (window.pixels() * size_of::<Sums>() as u64).div_ceil(1_000_000),
         };
         let count = match usize::try_from(window.pixels()) {
-            Ok(count) if window.pixels() <= MOST_PIXELS => count,
+            Ok(count) if window.pixels() <= MOST_PIXELS && fits_memory(window.pixels()) => count,
             _ => return Err(too_large()),
         };
         let mut pixels = Vec::new();
@@ -308,6 +308,21 @@ impl Film {
             light: layer(LIGHT, counts.light_samples),
         }
     }
+}
+
+/// Whether the machine has the memory for a film of that many pixels, and for developing it. Asking for it
+/// does not tell: systems promise more than they have, and end the program when it is used.
+fn fits_memory(pixels: u64) -> bool {
+    let needed = pixels.saturating_mul(2 * size_of::<Sums>() as u64);
+    available_memory().is_none_or(|available| needed <= available)
+}
+
+/// The memory that new work can have, in bytes, where the system tells (Linux).
+fn available_memory() -> Option<u64> {
+    let table = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = table.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    kibibytes.checked_mul(1024)
 }
 
 #[inline]

@@ -301,10 +301,16 @@ impl Camera {
         )
     }
 
+    /// Whether the picture goes on beyond its edges: see [`Camera::aliases`].
+    #[inline]
+    pub fn wraps(&self) -> bool {
+        matches!(self.projection, Projection::Environment)
+    }
+
     /// All film positions within `margin` pixels of the picture that show the same as `film`: itself, and
     /// for a 360° picture those beyond its seams and poles, which pixel filters reach across.
     pub fn aliases(&self, film: Vec2, margin: f32) -> impl Iterator<Item = Vec2> + use<> {
-        let around = matches!(self.projection, Projection::Environment);
+        let around = self.wraps();
         let (w, h) = (self.width, self.height);
         let rows = [film.y, -film.y, 2.0 * h - film.y];
         let columns = [0.0, w, -w, 0.5 * w, -0.5 * w, 1.5 * w];

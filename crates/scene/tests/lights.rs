@@ -30,7 +30,7 @@ fn emission_tells_its_densities() {
     for e in examples() {
         let (query, mut s, mut valid) = (e.query(), random(1), 0);
         for _ in 0..5000 {
-            let Some(x) = query.sample_emission(s.next_1d(), s.next_2d(), s.next_2d()) else { continue };
+            let Some(x) = query.sample_emission(s.next_2d(), s.next_2d(), s.next_2d()) else { continue };
             valid += 1;
             let told = query.emission_pdf(&x.point, x.direction);
             let near = |a: f32, b: f32| (a - b).abs() <= 1e-4 * b;
@@ -53,7 +53,7 @@ fn emission_carries_the_power() {
     for e in &all {
         let (query, mut s, mut m) = (e.query(), random(2), Moments::default());
         for _ in 0..60_000 {
-            let x = query.sample_emission(s.next_1d(), s.next_2d(), s.next_2d());
+            let x = query.sample_emission(s.next_2d(), s.next_2d(), s.next_2d());
             let flux = |x: Emission| {
                 y(x.radiance) * f64::from(x.cos) / f64::from(x.pdf.point.0) / f64::from(x.pdf.direction.0)
             };
@@ -78,7 +78,7 @@ fn emission_carries_the_power() {
 
 /// One estimate of the irradiance at a place by looking for a lamp. Nothing stands in the way here.
 fn towards_irradiance(query: &LightQuery<'_>, v: &View, s: &mut caustica_math::SampleStream) -> f64 {
-    let Some(t) = query.sample_towards(v.from, s.next_1d(), s.next_2d()) else { return 0.0 };
+    let Some(t) = query.sample_towards(v.from, s.next_2d(), s.next_2d()) else { return 0.0 };
     let falloff = match t.point.anchor {
         Anchor::Surface => f64::from(t.point.cos(t.direction)) / f64::from(t.distance).powi(2),
         Anchor::Point => f64::from(t.distance).powi(-2),

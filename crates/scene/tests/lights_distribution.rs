@@ -40,10 +40,10 @@ fn emitted_directions(e: &Example) -> Result<f64, String> {
     let frame =
         |p: &LightPoint| if p.anchor == Anchor::Surface { Frame::from_normal(p.normal) } else { UPRIGHT };
     let mut s = random(10);
-    let any = (0..100_000).find_map(|_| query.sample_emission(s.next_1d(), s.next_2d(), s.next_2d()));
+    let any = (0..100_000).find_map(|_| query.sample_emission(s.next_2d(), s.next_2d(), s.next_2d()));
     let any = any.expect("some emission").point;
     let mut sample = |u: [f32; 3]| {
-        let x = query.sample_emission(u[2], s.next_2d(), [u[0], u[1]])?;
+        let x = query.sample_emission([u[2], s.next_1d()], s.next_2d(), [u[0], u[1]])?;
         Some(frame(&x.point).to_local(x.direction))
     };
     let pdf = |v: Vec3| {
@@ -80,7 +80,7 @@ fn origins_at_infinity() {
         let (center, radius) = e.scene.bounding_sphere();
         let (mut s, mut cells, mut n) = (random(11), vec![0.0; 96], 0.0);
         for _ in 0..40_000 {
-            let Some(x) = e.query().sample_emission(s.next_1d(), s.next_2d(), s.next_2d()) else { continue };
+            let Some(x) = e.query().sample_emission(s.next_2d(), s.next_2d(), s.next_2d()) else { continue };
             let d = (x.origin - center) * (1.0 / radius);
             assert!((d.dot(x.direction) + 1.0).abs() < 1e-4, "{}: the disk is before the scene", e.name);
             let p = Frame::from_normal(x.direction).to_local(d);
@@ -128,7 +128,7 @@ fn points_on_sphere(
 ) -> Result<f64, String> {
     let (query, mut s) = (e.query(), random(12));
     let mut sample = |u: [f32; 3]| {
-        let x = query.sample_emission(u[2], [u[0], u[1]], s.next_2d())?;
+        let x = query.sample_emission([u[2], s.next_1d()], [u[0], u[1]], s.next_2d())?;
         Some(direction(&x.point))
     };
     let pdf = |v: Vec3| {
@@ -145,7 +145,7 @@ fn points_on_mesh(e: &Example) -> f64 {
     let n = 60_000.0;
     let mut observed = vec![0.0; surfaces.triangles().len() * 4];
     for _ in 0..n as u32 {
-        let x = query.sample_emission(s.next_1d(), s.next_2d(), s.next_2d()).expect("no part is dark");
+        let x = query.sample_emission(s.next_2d(), s.next_2d(), s.next_2d()).expect("no part is dark");
         let [a, b, c] = surfaces.corners(x.point.primitive);
         let part = |p: Vec3, q: Vec3| (p - x.point.at).cross(q - x.point.at).length();
         let whole = (b - a).cross(c - a).length();
@@ -188,7 +188,7 @@ fn directions_towards_lamps() {
 fn check_told(e: &Example, v: &View) {
     let (query, mut s) = (e.query(), random(14));
     for _ in 0..2000 {
-        let Some(t) = query.sample_towards(v.from, s.next_1d(), s.next_2d()) else { continue };
+        let Some(t) = query.sample_towards(v.from, s.next_2d(), s.next_2d()) else { continue };
         let told = query.towards_pdf(v.from, &t.point);
         assert!((told.0 - t.pdf.0).abs() <= 1e-4 * t.pdf.0, "{} from {:?}: {told:?} {t:?}", e.name, v.from);
         assert_eq!(t.radiance, query.radiance(&t.point, -t.direction), "{}", e.name);
@@ -200,7 +200,9 @@ fn check_told(e: &Example, v: &View) {
 
 fn towards(e: &Example, v: &View) -> Result<f64, String> {
     let query = e.query();
-    let mut sample = |u: [f32; 3]| Some(query.sample_towards(v.from, u[2], [u[0], u[1]])?.direction);
+    let mut t = random(19);
+    let mut sample =
+        |u: [f32; 3]| Some(query.sample_towards(v.from, [u[2], t.next_1d()], [u[0], u[1]])?.direction);
     let pdf = |d: Vec3| {
         let Some(p) = e.seen(v.from, d) else { return 0.0 };
         if query.radiance(&p, -d).is_black() {

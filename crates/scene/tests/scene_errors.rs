@@ -246,8 +246,8 @@ fn nothing_to_see() {
     let (center, radius) = scene.bounding_sphere();
     assert!(center.is_finite() && radius > 0.0 && scene.lamps().is_empty() && scene.lamps().power() == 0.0);
     let query = scene.lights(Default::default());
-    assert!(query.sample_emission(0.5, [0.5; 2], [0.5; 2]).is_none());
-    assert!(query.sample_towards(Vec3::ZERO, 0.5, [0.5; 2]).is_none());
+    assert!(query.sample_emission([0.5; 2], [0.5; 2], [0.5; 2]).is_none());
+    assert!(query.sample_towards(Vec3::ZERO, [0.5; 2], [0.5; 2]).is_none());
 }
 
 #[test]

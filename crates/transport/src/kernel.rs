@@ -72,7 +72,7 @@ pub struct Kernel<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) settings: Settings,
     pub(crate) filter: PixelFilter,
-    /// Which classes the running sums count.
+    /// Which classes have any strategy in the set; the running sums count whole classes.
     pub(crate) classes: Classes,
     pub(crate) exhaustive: bool,
     pub(crate) heuristic: Heuristic,
@@ -103,12 +103,11 @@ pub(crate) struct EyeSample {
 impl<'a> Kernel<'a> {
     /// A kernel for that scene.
     pub fn new(scene: &'a Scene, settings: Settings) -> Self {
-        let all = Classes { hit: true, next_event: true, splat: true, inner: true };
         let window = scene.film.window();
         Self {
             scene,
             filter: PixelFilter::new(&scene.film.filter),
-            classes: settings.strategies.classes().unwrap_or(all),
+            classes: settings.strategies.touched(),
             exhaustive: settings.exhaustive_weights || settings.strategies.classes().is_none(),
             heuristic: settings.heuristic,
             max_edges: settings.max_depth.unwrap_or(LONGEST_PATH).clamp(1, LONGEST_PATH) as usize,
@@ -195,10 +194,14 @@ impl<'a> Kernel<'a> {
             && film.y <= (w.y + w.height) as f32 + r
     }
 
-    /// Splats at every film position that shows the same place.
+    /// Splats at every film position that shows the same place. The position itself is one that [`Kernel::is_seen`]
+    /// found to be seen.
     #[inline]
     pub(crate) fn splat<S: Sink>(&self, film: Vec2, value: Spectrum, sink: &mut S) {
         let rgb = self.wavelengths.rgb(value);
+        if !self.scene.camera.wraps() {
+            return sink.splat(film, rgb);
+        }
         for alias in self.scene.camera.aliases(film, self.filter.radius()) {
             if self.reaches_window(alias) {
                 sink.splat(alias, rgb);
@@ -209,6 +212,9 @@ impl<'a> Kernel<'a> {
     /// Whether any alias of a film position is near enough to the window.
     #[inline]
     pub(crate) fn is_seen(&self, film: Vec2) -> bool {
+        if !self.scene.camera.wraps() {
+            return self.reaches_window(film);
+        }
         self.scene.camera.aliases(film, self.filter.radius()).any(|a| self.reaches_window(a))
     }
 }

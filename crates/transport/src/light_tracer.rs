@@ -13,7 +13,7 @@ use crate::vertex::Vertex;
 impl Kernel<'_> {
     pub(crate) fn trace_light<S: Sink>(&self, id: StreamId, sink: &mut S) {
         let mut stream = SampleStream::new(StreamId { walk: streams::LIGHT, ..id });
-        let (choice, u, v) = (stream.next_1d(), stream.next_2d(), stream.next_2d());
+        let (choice, u, v) = (stream.next_2d(), stream.next_2d(), stream.next_2d());
         let lights = self.scene.lights(self.wavelengths);
         let Some(emission) = lights.sample_emission(choice, u, v) else { return };
         if let Some((lamp, link, radiance)) = self.lamp_link(&emission, stream.next_2d()) {

@@ -133,7 +133,7 @@ impl Kernel<'_> {
 
     /// Next-event estimation, weighed against hitting the lamp.
     fn direct_light(&self, vertex: &Vertex, technique: Technique, stream: &mut SampleStream) -> Spectrum {
-        let (choice, u) = (stream.next_1d(), stream.next_2d());
+        let (choice, u) = (stream.next_2d(), stream.next_2d());
         let lights = self.scene.lights(self.wavelengths);
         let Some(found) = lights.sample_towards(vertex.point.position, choice, u) else {
             return Spectrum::ZERO;

@@ -60,11 +60,13 @@ pub struct StrategySet {
     alternatives: Vec<Vec<Condition>>,
     /// The set by classes, if it is a union of them.
     classes: Option<Classes>,
+    /// The classes of which it holds any.
+    touched: Classes,
 }
 
 /// Strategies by class. A path has at most one strategy of each class but `inner`, so that running sums
 /// can leave out any class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Classes {
     /// s = 0: the eye path hits the lamp.
     pub hit: bool,
@@ -96,7 +98,7 @@ impl Default for StrategySet {
 
 impl StrategySet {
     fn from_parts(text: String, alternatives: Vec<Vec<Condition>>) -> Self {
-        let mut set = Self { text, alternatives, classes: None };
+        let mut set = Self { text, alternatives, classes: None, touched: Classes::default() };
         let has = |s, t| set.matches(Strategy { s, t });
         let classes = Classes { hit: has(0, 2), next_event: has(1, 2), splat: has(2, 1), inner: has(2, 2) };
         // Beyond the largest bound no condition changes.
@@ -109,6 +111,15 @@ impl StrategySet {
             })
         });
         set.classes = same.then_some(classes);
+        let any = |mut s: std::ops::Range<u32>, t: std::ops::Range<u32>| {
+            s.any(|s| t.clone().any(|t| set.matches(Strategy { s, t })))
+        };
+        set.touched = Classes {
+            hit: any(0..1, 2..reach),
+            next_event: any(1..2, 2..reach),
+            splat: any(1..reach, 1..2),
+            inner: any(2..reach, 2..reach),
+        };
         set
     }
 
@@ -129,6 +140,12 @@ impl StrategySet {
     #[inline]
     pub fn classes(&self) -> Option<Classes> {
         self.classes
+    }
+
+    /// The classes of which the set holds any strategy.
+    #[inline]
+    pub fn touched(&self) -> Classes {
+        self.touched
     }
 
     /// Whether it holds every strategy.

@@ -180,7 +180,6 @@ fn light_sampler_densities() {
 
 /// No lamp is so weak beside the others that it is never chosen: the sun has 3·10¹² times the lantern's power.
 #[test]
-#[ignore = "fails: the probability of a lamp below 6e-8 of all power rounds to zero"]
 fn weak_lamps_are_chosen() {
     let scene = flatten(lantern_under_the_sun());
     let lights = scene.lights(caustica_math::Wavelengths::Rgb);

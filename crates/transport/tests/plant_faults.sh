@@ -11,8 +11,9 @@ root=$(cd "$(dirname "$0")/../../.." && pwd)
 dir=${FAULTS_DIR:-/tmp/caustica-faults}
 rm -rf "$dir/tree"
 mkdir -p "$dir/tree"
+# Without their times: what an earlier run built with a fault in it must not pass for fresh.
 for part in Cargo.toml Cargo.lock crates scenes; do
-    [ -e "$root/$part" ] && cp -Rp "$root/$part" "$dir/tree/"
+    [ -e "$root/$part" ] && cp -R "$root/$part" "$dir/tree/"
 done
 export CARGO_TARGET_DIR="$dir/target" RUST_BACKTRACE=0
 

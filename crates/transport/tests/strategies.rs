@@ -226,7 +226,8 @@ fn furnaces_by_every_integrator() {
     whole("furnace", furnace(), (400, 0.002), &[NAIVE, EMITTERS, PATH, Integrator::Bdpt]);
     whole("furnace", furnace(), (2000, 0.002), &[Integrator::Light]);
     whole("point", point_furnace(1), (400, 0.002), &[EMITTERS, PATH, Integrator::Bdpt]);
-    whole("point", point_furnace(1), (2000, 0.003), &[Integrator::Light]);
+    whole("point", point_furnace(1), (5000, 0.002), &[Integrator::Light]);
+    whole("four points", point_furnace(4), (400, 0.002), &[EMITTERS, PATH, Integrator::Bdpt]);
 }
 
 /// Balls of what neither absorbs nor adds light leave the radiance at one.

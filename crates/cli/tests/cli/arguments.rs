@@ -50,7 +50,13 @@ fn help_tells_exit_codes_and_defaults() {
         assert!(help.contains(word), "{word}: {help}");
     }
     let help = bench.run(&["render", "--help"]).ok().out;
-    for word in ["bdpt         bidirectional", "[default: all]", "[default: 3]", "[default: on]", "60s, 5m"] {
+    for word in [
+        "bdpt         bidirectional",
+        "[default: all]",
+        "[default: 1 for bdpt and light, 3 for the others]",
+        "[default: on]",
+        "60s, 5m",
+    ] {
         assert!(help.contains(word), "{word}: {help}");
     }
     assert!(bench.run(&["--version"]).ok().out.starts_with("caustica "));

@@ -60,7 +60,7 @@ fn files_lie_beside_the_scene_and_say_what_they_hold() {
         ("strategies", "all"),
         ("heuristic", "balance"),
         ("maxDepth", "unlimited"),
-        ("rouletteDepth", "3"),
+        ("rouletteDepth", "1"),
         ("scene", "scene.xml"),
         ("version", env!("CARGO_PKG_VERSION")),
     ] {

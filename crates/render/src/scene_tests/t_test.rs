@@ -165,7 +165,7 @@ fn sample_weight(bsdf: &Bsdf, given: Vec3, stream: &mut SampleStream) -> f64 {
 /// without extent, the irradiance across the ray.
 fn irradiance(scene: &Scene, from: Vec3, stream: &mut SampleStream) -> f64 {
     let wavelengths = Wavelengths::Rgb;
-    let (choice, u) = (stream.next_1d(), stream.next_2d());
+    let (choice, u) = (stream.next_2d(), stream.next_2d());
     let Some(lamp) = scene.lights(wavelengths).sample_towards(from, choice, u) else { return 0.0 };
     let falloff = match lamp.point.anchor {
         Anchor::Infinite => 1.0,

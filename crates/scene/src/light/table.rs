@@ -4,21 +4,34 @@ use caustica_math::{AreaPdf, Distribution1d, Mass, SolidAnglePdf, Spectrum, Vec3
 
 use super::{Anchor, Emission, EmissionPdf, Light, LightPoint, Surroundings, Towards};
 
+/// The part of the choice among lamps that is uniform.
+const UNIFORM_PART: f64 = 0.1;
+
 /// All lamps of a scene, chosen by power.
 #[derive(Debug)]
 pub struct Lights {
     lights: Vec<Light>,
     choice: Option<Distribution1d>,
+    power: f64,
     environments: Vec<u32>,
 }
 
 impl Lights {
     /// From lamps and the power of each.
+    ///
+    /// A small part of the choice is uniform: a lamp that is weak in all may be all the light of a place, and a
+    /// probability must not vanish beside a sun's.
     pub fn new(lights: Vec<Light>, powers: &[f32]) -> Self {
         let environments = (0..lights.len() as u32)
             .filter(|i| matches!(lights[*i as usize], Light::Environment(_)))
             .collect();
-        Self { choice: Distribution1d::new(powers), lights, environments }
+        let power: f64 = powers.iter().map(|p| f64::from(*p)).sum();
+        let weight = |p: &f32| {
+            let uniform = UNIFORM_PART / powers.len() as f64;
+            ((1.0 - UNIFORM_PART) * f64::from(*p) / power + uniform) as f32
+        };
+        let weights: Vec<f32> = if power > 0.0 { powers.iter().map(weight).collect() } else { Vec::new() };
+        Self { choice: Distribution1d::new(&weights), lights, power, environments }
     }
 
     /// How many lamps there are.
@@ -38,7 +51,7 @@ impl Lights {
 
     /// The sum of all powers, in W.
     pub fn power(&self) -> f64 {
-        self.choice.as_ref().map_or(0.0, Distribution1d::total)
+        self.power
     }
 
     /// The lamp of that index.
@@ -73,13 +86,14 @@ pub struct LightQuery<'a> {
 }
 
 impl LightQuery<'_> {
-    /// Begins a light path: a lamp by power from `choice`, a point on it from `u`, a direction from `v`.
-    pub fn sample_emission(&self, choice: f32, u: [f32; 2], v: [f32; 2]) -> Option<Emission> {
-        let chosen = self.lights.choice.as_ref()?.sample(choice);
+    /// Begins a light path: a lamp by power and a triangle of it from `choice`, a point on it from `u`, a
+    /// direction from `v`.
+    pub fn sample_emission(&self, choice: [f32; 2], u: [f32; 2], v: [f32; 2]) -> Option<Emission> {
+        let chosen = self.lights.choice.as_ref()?.sample(choice[0]);
         let index = chosen.index as u32;
         let around = &self.around;
         let mut emission = match self.lights.get(index) {
-            Light::Area(l) => l.sample_emission(index, chosen.remapped, (u, v), around)?,
+            Light::Area(l) => l.sample_emission(index, choice[1], (u, v), around)?,
             Light::Point { position, intensity } => {
                 let direction = warp::uniform_sphere(v);
                 from_point(index, *position, direction, (*intensity, warp::UNIFORM_SPHERE_PDF))
@@ -126,12 +140,12 @@ impl LightQuery<'_> {
     /// Looks for a lamp from `from`: next-event estimation. `None` if the lamp that was chosen sends
     /// nothing there. Visibility is not tested.
     #[inline]
-    pub fn sample_towards(&self, from: Vec3, choice: f32, u: [f32; 2]) -> Option<Towards> {
-        let chosen = self.lights.choice.as_ref()?.sample(choice);
+    pub fn sample_towards(&self, from: Vec3, choice: [f32; 2], u: [f32; 2]) -> Option<Towards> {
+        let chosen = self.lights.choice.as_ref()?.sample(choice[0]);
         let index = chosen.index as u32;
         let around = &self.around;
         let (point, pdf) = match self.lights.get(index) {
-            Light::Area(l) => l.sample_towards(index, from, (chosen.remapped, u), around)?,
+            Light::Area(l) => l.sample_towards(index, from, (choice[1], u), around)?,
             Light::Point { position, .. } => (LightPoint::point(index, *position), AreaPdf(1.0)),
             Light::Spot(l) => (LightPoint::point(index, l.position), AreaPdf(1.0)),
             Light::Directional(l) => (LightPoint::infinite(index, -l.direction), AreaPdf(1.0)),

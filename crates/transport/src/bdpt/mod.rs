@@ -84,7 +84,7 @@ impl Kernel<'_> {
     fn light_path(&self, id: StreamId, path: &mut Subpath) -> Option<Emission> {
         path.vertices.clear();
         let mut stream = SampleStream::new(StreamId { walk: streams::LIGHT, ..id });
-        let (choice, u, v) = (stream.next_1d(), stream.next_2d(), stream.next_2d());
+        let (choice, u, v) = (stream.next_2d(), stream.next_2d(), stream.next_2d());
         let emission = self.scene.lights(self.wavelengths).sample_emission(choice, u, v)?;
         self.grow(emission_flight(&emission), &Start::Light(&emission), &mut stream, path);
         Some(emission)

@@ -27,7 +27,7 @@ impl Kernel<'_> {
         let count = sample.eye.vertices.len().min(self.max_edges - 1);
         for i in 0..count {
             let vertex = &sample.eye.vertices[i];
-            let (choice, u) = (stream.next_1d(), stream.next_2d());
+            let (choice, u) = (stream.next_2d(), stream.next_2d());
             if !vertex.is_connectible() {
                 continue;
             }
