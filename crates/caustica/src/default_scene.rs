@@ -5,10 +5,11 @@ use caustica_scene::Description;
 
 const SCENE: &str = include_str!("../../../scenes/final/final.xml");
 
-const MESHES: [(&str, &str); 5] = [
+const MESHES: [(&str, &str); 6] = [
     ("meshes/floor.obj", include_str!("../../../scenes/final/meshes/floor.obj")),
     ("meshes/ceiling.obj", include_str!("../../../scenes/final/meshes/ceiling.obj")),
     ("meshes/back.obj", include_str!("../../../scenes/final/meshes/back.obj")),
+    ("meshes/front.obj", include_str!("../../../scenes/final/meshes/front.obj")),
     ("meshes/left.obj", include_str!("../../../scenes/final/meshes/left.obj")),
     ("meshes/right.obj", include_str!("../../../scenes/final/meshes/right.obj")),
 ];
