@@ -1,6 +1,6 @@
 //! The ray-intersection tree: a four-wide bounding volume hierarchy over triangles and spheres.
 //!
-//! The tree is built by binned surface-area heuristic ([`build`]) and walked by [`traverse`]. What a ray
+//! The tree is built by binned surface-area heuristic (`build`) and walked by `traverse`. What a ray
 //! hits does not depend on the shape of the tree: boxes are conservative, and of two surfaces at the same
 //! distance the one with the lower id is hit.
 

@@ -73,7 +73,7 @@ impl AreaLight {
         around.textures.spectrum(&self.radiance, uv, around.wavelengths)
     }
 
-    /// The density of [`AreaLight::sample_point`] on that primitive.
+    /// The density of points by area and emission on that primitive.
     #[inline]
     pub fn area_pdf(&self, primitive: u32) -> AreaPdf {
         match &self.surface {
