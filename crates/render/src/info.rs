@@ -132,7 +132,8 @@ fn camera_name(kind: &CameraKind) -> &'static str {
     }
 }
 
-fn material_name(kind: &MaterialKind) -> &'static str {
+/// The plugin name of a material.
+pub(crate) fn material_name(kind: &MaterialKind) -> &'static str {
     match kind {
         MaterialKind::Diffuse { .. } => "diffuse",
         MaterialKind::Mirror { .. } => "mirror",

@@ -23,13 +23,14 @@ mod chi_square;
 mod parallel;
 mod t_test;
 
+use crate::info::material_name;
 use crate::session::available_threads;
 use caustica_import::{SceneTest, TestKind};
 use caustica_math::stream::mix64;
 use caustica_math::{Vec3, Wavelengths};
 use caustica_scene::bsdf::Bsdf;
 use caustica_scene::bvh::Ray;
-use caustica_scene::description::{Geometry, MaterialId, MaterialKind, Shape};
+use caustica_scene::description::{Geometry, MaterialId, Shape};
 use caustica_scene::{Description, Diagnostic, Origin, Scene};
 use serde::Serialize;
 
@@ -117,15 +118,7 @@ fn stream_seed(seed: u64, index: u64) -> u64 {
 
 /// The name of the BSDF under test of that index.
 fn bsdf_name(stage: &Description, index: usize) -> String {
-    let plugin = match stage.materials[index].kind {
-        MaterialKind::Diffuse { .. } => "diffuse",
-        MaterialKind::Mirror { .. } => "mirror",
-        MaterialKind::Dielectric { .. } => "dielectric",
-        MaterialKind::RoughDielectric { .. } => "roughdielectric",
-        MaterialKind::Conductor { .. } => "conductor",
-        MaterialKind::RoughConductor { .. } => "roughconductor",
-        MaterialKind::Microfacet { .. } => "microfacet",
-    };
+    let plugin = material_name(&stage.materials[index].kind);
     format!("bsdf {} ({plugin})", index + 1)
 }
 

@@ -6,3 +6,4 @@ pub mod chi_square;
 pub mod known_failures;
 pub mod oracle;
 pub mod scenes;
+pub mod ways;

@@ -3,48 +3,16 @@
 
 use caustica_math::{Filter, Rgb};
 use caustica_scene::Description;
-use caustica_scene::description::{CameraKind, Crop, Integrator, LightKind, Technique};
+use caustica_scene::description::{CameraKind, Crop, LightKind};
 use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten};
 use caustica_testkit::scenes::*;
-use caustica_transport::{Heuristic, Settings};
-
-/// A way to render, as tests name them.
-#[derive(Clone, Copy, PartialEq)]
-enum Way {
-    Naive,
-    Path,
-    Emitters,
-    Light,
-    Bdpt,
-    /// Bidirectional, by the power heuristic.
-    Power,
-    /// Bidirectional without the light image, with weights of the restricted set.
-    NoLightImage,
-    /// A set that is no union of classes, with exhaustive weights.
-    Odd,
-}
-
-fn settings(way: Way, seed: u64) -> Settings {
-    let base = Settings { seed, max_depth: Some(9), ..Settings::default() };
-    let integrator = |integrator| Settings { integrator, ..base.clone() };
-    let strategies = |text: &str| Settings { strategies: text.parse().unwrap(), ..base.clone() };
-    match way {
-        Way::Naive => integrator(Integrator::Path(Technique::Materials)),
-        Way::Path => integrator(Integrator::Path(Technique::Mis)),
-        Way::Emitters => integrator(Integrator::Path(Technique::Emitters)),
-        Way::Light => integrator(Integrator::Light),
-        Way::Bdpt => base,
-        Way::Power => Settings { heuristic: Heuristic::Power, ..base },
-        Way::NoLightImage => strategies("t>=2"),
-        Way::Odd => strategies("s=0;s=1;t>=3;s=2&t=2"),
-    }
-}
+use caustica_testkit::ways::{ODD, Way, Way::*};
 
 /// Renders a scene in several ways and compares each with the first.
 fn check(name: &str, description: Description, passes: u32, ways: &[Way]) {
     let scene = flatten(description);
     let plan = Plan { passes, block: 4, only: None };
-    let render = |(i, way): (usize, &Way)| estimate(&scene, &settings(*way, 11 + i as u64), plan);
+    let render = |(i, way): (usize, &Way)| estimate(&scene, &way.settings(11 + i as u64), plan);
     let estimates: Vec<Estimate> = ways.iter().enumerate().map(render).collect();
     for (i, e) in estimates.iter().enumerate() {
         println!("{name} {i}: {:.5} ± {:.5}", e.whole.mean, e.whole.variance_of_mean().sqrt());
@@ -56,16 +24,14 @@ fn check(name: &str, description: Description, passes: u32, ways: &[Way]) {
     }
 }
 
-use Way::*;
-
 #[test]
 fn diffuse_box() {
-    check("box", open_box(), 400, &[Bdpt, Naive, Path, Emitters, Light, Power, NoLightImage, Odd]);
+    check("box", open_box(), 400, &[Bdpt, Naive, Path, Emitters, Light, Power, NoLightImage, ODD]);
 }
 
 #[test]
 fn glass() {
-    check("glass", ball(glass_kind(false)), 6000, &[Bdpt, Naive, Path, Power, NoLightImage, Odd]);
+    check("glass", ball(glass_kind(false)), 6000, &[Bdpt, Naive, Path, Power, NoLightImage, ODD]);
 }
 
 #[test]
@@ -75,7 +41,7 @@ fn inverted_glass() {
 
 #[test]
 fn rough_glass() {
-    check("rough glass", ball(rough_glass_kind()), 400, &[Bdpt, Naive, Path, Light, Odd]);
+    check("rough glass", ball(rough_glass_kind()), 400, &[Bdpt, Naive, Path, Light, ODD]);
 }
 
 #[test]
@@ -86,7 +52,7 @@ fn metals() {
 
 #[test]
 fn plastic() {
-    check("plastic", ball(plastic_kind()), 400, &[Bdpt, Naive, Path, Light, Odd]);
+    check("plastic", ball(plastic_kind()), 400, &[Bdpt, Naive, Path, Light, ODD]);
 }
 
 #[test]
@@ -100,7 +66,7 @@ fn shading_normals() {
 
 #[test]
 fn environment_light() {
-    check("sky", under_the_sky(plastic_kind()), 600, &[Bdpt, Naive, Path, Emitters, Light, Odd]);
+    check("sky", under_the_sky(plastic_kind()), 600, &[Bdpt, Naive, Path, Emitters, Light, ODD]);
     check("sky, glass", under_the_sky(glass_kind(false)), 600, &[Bdpt, Naive, Path]);
     let mut both = open_box();
     caustica_testkit::build::light(&mut both, LightKind::Constant { radiance: Rgb::splat(0.4) });
@@ -119,10 +85,10 @@ fn delta_lights() {
         outer_angle,
     };
     let sun = LightKind::Directional { direction: [0.2, -0.3, 1.0], irradiance: white };
-    check("point", lit_by(point), 400, &[Bdpt, Path, Light, Odd]);
+    check("point", lit_by(point), 400, &[Bdpt, Path, Light, ODD]);
     check("spot", lit_by(spot(20.0, 35.0)), 400, &[Bdpt, Path, Light]);
-    check("narrow spot", lit_by(spot(6.0, 7.0)), 800, &[Bdpt, Light, Odd]);
-    check("sun", lit_by(sun), 400, &[Bdpt, Path, Light, Odd]);
+    check("narrow spot", lit_by(spot(6.0, 7.0)), 800, &[Bdpt, Light, ODD]);
+    check("sun", lit_by(sun), 400, &[Bdpt, Path, Light, ODD]);
 }
 
 #[test]
@@ -144,17 +110,17 @@ fn cameras() {
     };
     let lens = CameraKind::ThinLens { fov: 45.0, aperture_radius: 0.2, focus_distance: 2.5 };
     check("thin lens", with(lens), 400, &[Bdpt, Path, Light]);
-    check("orthographic", with(CameraKind::Orthographic), 400, &[Bdpt, Path, Light, Odd]);
+    check("orthographic", with(CameraKind::Orthographic), 400, &[Bdpt, Path, Light, ODD]);
     let mut around = with(CameraKind::Environment);
     around.camera.to_world = caustica_math::Transform::translate([0.1, 0.2, -0.3]);
     around.film.filter = Filter::Gaussian { radius: 2.0, stddev: 0.7 };
     check("360°", around, 400, &[Bdpt, Path, Light]);
     let mut sky = under_the_sky(plastic_kind());
     sky.camera.kind = CameraKind::Orthographic;
-    check("orthographic sky", sky, 400, &[Bdpt, Path, Odd]);
+    check("orthographic sky", sky, 400, &[Bdpt, Path, ODD]);
     let mut sky = under_the_sky(plastic_kind());
     sky.camera.kind = CameraKind::Environment;
-    check("360° sky", sky, 400, &[Bdpt, Path, Light, Odd]);
+    check("360° sky", sky, 400, &[Bdpt, Path, Light, ODD]);
 }
 
 #[test]

@@ -9,45 +9,13 @@ use std::f64::consts::PI;
 use caustica_math::elementary::{asin, atan2, ln, sin};
 use caustica_math::{Filter, Rgb, Vec2};
 use caustica_scene::Description;
-use caustica_scene::description::{CameraKind, Crop, Image, Integrator, LightKind, MaterialKind, Technique};
+use caustica_scene::description::{CameraKind, Crop, Image, LightKind, MaterialKind};
 use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten, is_close};
 use caustica_testkit::build::{self, diffuse, emit, quad, scene, sphere};
 use caustica_testkit::known_failures::*;
 use caustica_testkit::scenes;
-use caustica_transport::{Heuristic, Kernel, Scratch, Settings, Sink, Strategy};
-
-/// A way to render, as tests name them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    Naive,
-    Path,
-    Emitters,
-    Light,
-    Bdpt,
-    /// Bidirectional, by the power heuristic.
-    Power,
-    /// Bidirectional without the light image.
-    NoLightImage,
-    /// Bidirectional by one strategy or a few, with the weights of that set.
-    Only(&'static str),
-}
-use Way::*;
-
-fn settings(way: Way, seed: u64) -> Settings {
-    let base = Settings { seed, max_depth: Some(9), ..Settings::default() };
-    let integrator = |integrator| Settings { integrator, ..base.clone() };
-    let strategies = |text: &str| Settings { strategies: text.parse().unwrap(), ..base.clone() };
-    match way {
-        Naive => integrator(Integrator::Path(Technique::Materials)),
-        Path => integrator(Integrator::Path(Technique::Mis)),
-        Emitters => integrator(Integrator::Path(Technique::Emitters)),
-        Light => integrator(Integrator::Light),
-        Bdpt => base,
-        Power => Settings { heuristic: Heuristic::Power, ..base },
-        NoLightImage => strategies("t>=2"),
-        Only(text) => strategies(text),
-    }
-}
+use caustica_testkit::ways::{Way, Way::*};
+use caustica_transport::{Kernel, Scratch, Settings, Sink, Strategy};
 
 /// What differs between a test and the common case.
 #[derive(Clone)]
@@ -65,7 +33,7 @@ impl Check {
         let scene = flatten(description);
         let plan = Plan { passes: self.passes, block: self.block, only: None };
         let render = |(i, way): (usize, &Way)| {
-            let settings = Settings { max_depth: Some(self.depth), ..settings(*way, 101 + i as u64) };
+            let settings = Settings { max_depth: Some(self.depth), ..way.settings(101 + i as u64) };
             let e = estimate(&scene, &settings, plan);
             println!("{} {way:?}: {:.5} ± {:.5}", self.name, e.whole.mean, e.whole.variance_of_mean().sqrt());
             e
@@ -307,8 +275,8 @@ impl Sink for Largest {
 fn point_light_fireflies() {
     check("point at the floor").agree(point_at_the_floor(), &[Bdpt, Light, Only("s>=2"), Power]);
     let scene = flatten(point_at_the_floor());
-    let largest = |way| {
-        let kernel = Kernel::new(&scene, settings(way, 5));
+    let largest = |way: Way| {
+        let kernel = Kernel::new(&scene, way.settings(5));
         let (mut scratch, mut sink) = (Scratch::default(), Largest::default());
         for sample in 0..300 {
             for pixel in 0..256 {
@@ -325,7 +293,7 @@ fn point_light_fireflies() {
 
 fn numbers(d: Description, way: Way, passes: u32) -> Vec<f64> {
     let plan = Plan { passes, block: 2, only: None };
-    estimate(&flatten(d), &settings(way, 77), plan).blocks.iter().map(|b| b.mean).collect()
+    estimate(&flatten(d), &way.settings(77), plan).blocks.iter().map(|b| b.mean).collect()
 }
 
 /// "Negative scale (mirrored transforms) with vertex normals, lamps that flip."
@@ -409,7 +377,7 @@ fn roulette() {
         let from = |roulette_start, seed| {
             let e = estimate(
                 &scene,
-                &Settings { roulette_start: Some(roulette_start), ..settings(way, seed) },
+                &Settings { roulette_start: Some(roulette_start), ..way.settings(seed) },
                 plan,
             );
             println!(
@@ -508,7 +476,7 @@ fn seeds() {
         assert_eq!(a, b, "{way:?}");
         let scene = flatten(scaled(1.0));
         let plan = Plan { passes: 8, block: 2, only: None };
-        let other = estimate(&scene, &settings(way, 78), plan);
+        let other = estimate(&scene, &way.settings(78), plan);
         let same = other.blocks.iter().zip(&a).filter(|(x, y)| x.mean == **y).count();
         // Some blocks show nothing but the environment.
         assert!(same < 32, "{way:?}: {same} of 64 blocks do not depend on the seed");
@@ -517,7 +485,7 @@ fn seeds() {
     let scene = flatten(scenes::open_box());
     let e = |passes, seed| {
         let plan = Plan { passes, block: 4, only: None };
-        estimate(&scene, &settings(Bdpt, seed), plan)
+        estimate(&scene, &Bdpt.settings(seed), plan)
     };
     agree(&e(100, 1), &e(100, u64::MAX)).unwrap();
 }

@@ -10,7 +10,7 @@ use std::cell::RefCell;
 
 use caustica_math::{SampleStream, Spectrum, StreamId, Vec2};
 use caustica_scene::bvh::Ray;
-use caustica_scene::camera::CameraPoint;
+use caustica_scene::camera::{CameraLink, CameraPoint};
 use caustica_scene::light::{Anchor, Emission, LightPoint};
 
 use crate::kernel::{EyeSample, Kernel, Scratch, streams};
@@ -49,6 +49,20 @@ struct Joined {
     value: Spectrum,
     film: Vec2,
     camera: CameraPoint,
+}
+
+impl Joined {
+    /// A path of strategy (s, 1), seen through `link`.
+    fn seen(
+        strategy: Strategy,
+        emission: &Emission,
+        junction: Junction,
+        value: Spectrum,
+        link: &CameraLink,
+    ) -> Self {
+        let (lamp, emitted) = (emission.point, emission.pdf.point.0);
+        Self { strategy, lamp, emitted, junction, value, film: link.film, camera: link.point }
+    }
 }
 
 impl Kernel<'_> {

@@ -42,15 +42,8 @@ impl Kernel<'_> {
         let (lamp, link, radiance) = self.lamp_link(emission, lens)?;
         let from_camera = link.pdf.0 * link.falloff * lamp.cos(link.direction);
         let value = radiance * (from_camera / (emission.pdf.point.0 * self.light_paths));
-        let joined = Joined {
-            strategy: Strategy { s: 1, t: 1 },
-            lamp,
-            emitted: emission.pdf.point.0,
-            junction: Junction { light: (from_camera, 0.0), eye: (0.0, 0.0) },
-            value,
-            film: link.film,
-            camera: link.point,
-        };
+        let junction = Junction { light: (from_camera, 0.0), eye: (0.0, 0.0) };
+        let joined = Joined::seen(Strategy { s: 1, t: 1 }, emission, junction, value, &link);
         let value = self.finish(
             sample,
             &joined,
@@ -110,15 +103,7 @@ impl Kernel<'_> {
         let from_camera = link.pdf.0 * link.falloff * y.cos(link.direction);
         let junction = Junction { light: (from_camera, at_light.reverse.0), eye: (0.0, 0.0) };
         let emission = sample.emission.as_ref()?;
-        let joined = Joined {
-            strategy,
-            lamp: emission.point,
-            emitted: emission.pdf.point.0,
-            junction,
-            value,
-            film: link.film,
-            camera: link.point,
-        };
+        let joined = Joined::seen(strategy, emission, junction, value, &link);
         let value = self.finish(
             sample,
             &joined,
