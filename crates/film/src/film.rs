@@ -154,7 +154,7 @@ impl Film {
     }
 
     /// A buffer for the splats of one thread, of half the film's size; `None` if the memory for it is not to
-    /// be had. Adding to it is several times as fast as adding to sums that threads share.
+    /// be had. It spares splats the atomic additions to sums that threads share.
     pub fn light_buffer(&self) -> Option<LightBuffer> {
         let mut sums = Vec::new();
         sums.try_reserve_exact(self.pixels.len()).ok()?;

@@ -3,7 +3,7 @@
 use caustica_math::Spectrum;
 use caustica_scene::bsdf::Walk;
 
-use super::{Joined, Junction, Sample};
+use super::{Junction, Sample};
 use crate::edge::Edge;
 use crate::kernel::Kernel;
 use crate::sink::Sink;
@@ -65,15 +65,7 @@ impl Kernel<'_> {
             eye: (at_light.forward.0 * edge.jacobian(z.cos(direction)), at_eye.reverse.0),
         };
         let emission = sample.emission.as_ref()?;
-        let joined = Joined {
-            strategy,
-            lamp: emission.point,
-            emitted: emission.pdf.point.0,
-            junction,
-            value,
-            film: sample.film,
-            camera: sample.camera,
-        };
+        let joined = sample.joined(strategy, (emission.point, emission.pdf.point.0), junction, value);
         Some(self.finish(
             sample,
             &joined,

@@ -51,6 +51,20 @@ struct Joined {
     camera: CameraPoint,
 }
 
+impl Sample<'_> {
+    /// A path of strategy (s, t) with t ≥ 2: it belongs to the sample's own pixel. The lamp comes with its density
+    /// by emission.
+    fn joined(
+        &self,
+        strategy: Strategy,
+        (lamp, emitted): (LightPoint, f32),
+        junction: Junction,
+        value: Spectrum,
+    ) -> Joined {
+        Joined { strategy, lamp, emitted, junction, value, film: self.film, camera: self.camera }
+    }
+}
+
 impl Joined {
     /// A path of strategy (s, 1), seen through `link`.
     fn seen(

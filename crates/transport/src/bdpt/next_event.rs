@@ -5,7 +5,7 @@ use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::light::Towards;
 
-use super::{Joined, Junction, Sample};
+use super::{Junction, Sample};
 use crate::edge::Edge;
 use crate::kernel::Kernel;
 use crate::sink::Sink;
@@ -57,15 +57,9 @@ impl Kernel<'_> {
         let from_light = pdf.direction.0 * edge.jacobian(vertex.cos(found.direction));
         let delta = lights.lights.get(found.point.light).is_delta();
         let from_camera = if delta { 0.0 } else { scatter.forward.0 * to_lamp };
-        let joined = Joined {
-            strategy: Strategy { s: 1, t: t as u32 },
-            lamp: found.point,
-            emitted: pdf.point.0,
-            junction: Junction { light: (from_camera, 0.0), eye: (from_light, scatter.reverse.0) },
-            value,
-            film: sample.film,
-            camera: sample.camera,
-        };
+        let strategy = Strategy { s: 1, t: t as u32 };
+        let junction = Junction { light: (from_camera, 0.0), eye: (from_light, scatter.reverse.0) };
+        let joined = sample.joined(strategy, (found.point, pdf.point.0), junction, value);
         Some(self.finish(
             sample,
             &joined,
