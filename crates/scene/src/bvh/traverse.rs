@@ -1,202 +1,277 @@
-use wide::f32x4;
+//! Walking the tree.
+#![allow(unsafe_code)]
 
-#[cfg(doc)]
-use super::Node;
-use super::triangle::ShearedRay;
-use super::{Bvh, Child, Hit, Ray};
+use std::mem::MaybeUninit;
 
-/// Entries that wait while a tree of that many levels is walked: three siblings at each.
-pub(super) const fn stack_for(levels: usize) -> usize {
-    3 * levels + 4
+use super::build::MAX_DEPTH;
+use super::lanes::{Lanes, Portable};
+use super::ray::{LaneRay, is_parallel};
+use super::triangle::Best;
+use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
+
+/// Entries that wait while the deepest tree is walked: all siblings but one at each level.
+const STACK: usize = (WIDTH - 1) * MAX_DEPTH + 1;
+
+/// The first hit along the ray, by lanes that every CPU has.
+pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    first_hit::<Portable>(bvh, ray)
 }
 
-/// Enough for trees of small scenes. Clearing a stack costs time, so that shallow trees get a shallow one.
-const SMALL_STACK: usize = 32;
+/// Whether the ray hits anything, by lanes that every CPU has.
+pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
+    any_hit::<Portable>(bvh, ray)
+}
 
-/// Enough for the depth that the builder allows.
-const LARGE_STACK: usize = stack_for(super::build::MAX_DEPTH);
+/// What waits to be visited. Clearing it for every ray would cost more than many a ray.
+struct Stack<T>([MaybeUninit<T>; STACK]);
+
+impl<T: Copy> Stack<T> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self([const { MaybeUninit::uninit() }; STACK])
+    }
+
+    /// Writes entry `at`.
+    ///
+    /// # Safety
+    /// `at` is less than [`STACK`]. (No tree is deeper than `MAX_DEPTH`, the builder sees to it, and each level
+    /// leaves at most `WIDTH - 1` entries behind.)
+    #[inline(always)]
+    unsafe fn write(&mut self, at: usize, value: T) {
+        debug_assert!(at < STACK);
+        // SAFETY: as the caller promises.
+        unsafe { self.0.get_unchecked_mut(at) }.write(value);
+    }
+
+    /// Reads entry `at`.
+    ///
+    /// # Safety
+    /// The entry has been written.
+    #[inline(always)]
+    unsafe fn read(&self, at: usize) -> T {
+        // SAFETY: as the caller promises.
+        unsafe { self.0.get_unchecked(at).assume_init() }
+    }
+}
+
+/// A child with where the ray enters it, such that keys are ordered as the distances are: distances are not
+/// negative, and of such numbers the bits are ordered as the values.
+#[inline(always)]
+fn key(t_near: f32, child: Child) -> u64 {
+    u64::from(t_near.to_bits()) << 32 | u64::from(child.0)
+}
+
+#[inline(always)]
+fn child_of(key: u64) -> Child {
+    Child(key as u32)
+}
+
+#[inline(always)]
+fn distance_of(key: u64) -> f32 {
+    f32::from_bits((key >> 32) as u32)
+}
 
 /// The first hit along the ray.
-#[inline]
-pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
-    if bvh.stack <= SMALL_STACK {
-        closest_with::<SMALL_STACK>(bvh, ray)
-    } else {
-        closest_with::<LARGE_STACK>(bvh, ray)
-    }
+#[inline(always)]
+pub(super) fn first_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    if is_parallel(ray) { first_hit_of::<L, true>(bvh, ray) } else { first_hit_of::<L, false>(bvh, ray) }
 }
 
-/// Whether the ray hits anything.
-#[inline]
-pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
-    if bvh.stack <= SMALL_STACK {
-        occluded_with::<SMALL_STACK>(bvh, ray)
-    } else {
-        occluded_with::<LARGE_STACK>(bvh, ray)
-    }
-}
-
-/// A ray made ready for box tests.
-pub(super) struct SlabRay {
-    inverse: [f32x4; 3],
-    /// For each axis where the ray starts, for planes that are entered first and for those that are left.
-    origins: [[f32x4; 2]; 3],
-    /// For each axis the row of [`Node::bounds`] that is entered first.
-    near: [usize; 3],
-}
-
-/// The far planes are pushed out by this factor, which covers the rounding of the slab test and of the
-/// triangle test, so that no box is missed whose content is hit (Ize, "Robust BVH Ray Traversal", JCGT
-/// 2(2), 2013).
-const FAR: f32 = 1.0 + 8.0 * f32::EPSILON;
-
-impl SlabRay {
-    #[inline]
-    fn new(ray: &Ray) -> Self {
-        let (d, o) = (ray.direction, ray.origin);
-        let axis = |i: usize| {
-            let (d, o) = (d[i], o[i]);
-            // A zero component would make 0·∞ of a plane through the origin.
-            let parallel = d.abs() < f32::MIN_POSITIVE;
-            let inverse = 1.0 / if parallel { f32::MIN_POSITIVE.copysign(d) } else { d };
-            // A ray in the plane in which a box ends does not leave the box at once.
-            let inset = if parallel { (o.abs() * f32::EPSILON).max(1e-20).copysign(d) } else { 0.0 };
-            (
-                f32x4::splat(inverse),
-                [f32x4::splat(o), f32x4::splat(o - inset)],
-                if inverse < 0.0 { i + 3 } else { i },
-            )
-        };
-        let [x, y, z] = [axis(0), axis(1), axis(2)];
-        Self { inverse: [x.0, y.0, z.0], origins: [x.1, y.1, z.1], near: [x.2, y.2, z.2] }
-    }
-
-    /// Which of four boxes, given by the rows of [`Node::bounds`], the ray meets before `t_max`, and where it
-    /// enters them.
-    ///
-    /// Differences and products are monotonic even when rounded: a box around a box that is met is met, and
-    /// entered no later.
-    #[inline(always)]
-    pub(super) fn enter(&self, row: impl Fn(usize) -> f32x4, t_max: f32) -> (u32, f32x4) {
-        let near = |axis: usize| (row(self.near[axis]) - self.origins[axis][0]) * self.inverse[axis];
-        let far = |axis: usize| {
-            let opposite = if self.near[axis] >= 3 { axis } else { axis + 3 };
-            (row(opposite) - self.origins[axis][1]) * self.inverse[axis]
-        };
-        let t_near = near(0).fast_max(near(1)).fast_max(near(2).fast_max(f32x4::ZERO));
-        let t_far = far(0).fast_min(far(1)).fast_min(far(2));
-        let hit = t_near.simd_le((t_far * f32x4::splat(FAR)).fast_min(f32x4::splat(t_max)));
-        (hit.to_bitmask(), t_near)
-    }
-}
-
-fn closest_with<const STACK: usize>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
-    let slab = SlabRay::new(ray);
-    let sheared = ShearedRay::new(ray, &slab);
-    let mut best: Option<Hit> = None;
-    let mut stack = [(Child::NONE, 0.0_f32); STACK];
-    let mut depth = 0;
-    let mut current = Child::node(0);
-    if bvh.nodes.is_empty() {
-        return None;
-    }
+#[inline(always)]
+fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    let lanes = LaneRay::<L, P>::new(ray);
+    let mut best = Best { t: ray.t_max, primitive: Best::NOTHING, edges: [0.0; 2], det: 1.0 };
+    let (mut stack, mut waiting) = (Stack::new(), 0);
+    let mut current = bvh.root;
     loop {
-        if current.is_leaf() {
-            test_leaf(bvh, current, ray, &sheared, &mut best);
-        } else {
-            let node = &bvh.nodes[current.0 as usize];
-            let limit = best.map_or(ray.t_max, |b| b.t);
-            let (mut mask, t_near) = slab.enter(|row| f32x4::new(node.bounds[row]), limit);
-            if mask != 0 {
-                let t_near = t_near.to_array();
-                let first = mask.trailing_zeros() as usize;
-                mask &= mask - 1;
-                let mut nearest = (node.children[first], t_near[first]);
-                let bottom = depth;
-                while mask != 0 {
-                    let lane = mask.trailing_zeros() as usize;
-                    mask &= mask - 1;
-                    let mut other = (node.children[lane], t_near[lane]);
-                    if other.1 < nearest.1 {
-                        std::mem::swap(&mut other, &mut nearest);
-                    }
-                    // Insertion, so that the nearest of those that wait is on top.
-                    let mut slot = depth;
-                    while slot > bottom && stack[slot - 1].1 < other.1 {
-                        stack[slot] = stack[slot - 1];
-                        slot -= 1;
-                    }
-                    stack[slot] = other;
-                    depth += 1;
-                }
-                current = nearest.0;
+        while !current.is_leaf() {
+            // SAFETY: children that are no leaves are indices of nodes.
+            let node = unsafe { bvh.nodes.get_unchecked(current.0 as usize) };
+            let (mask, t_near) = lanes.enter(&node.bounds, L::splat(best.t));
+            if mask == 0 {
+                break;
+            }
+            let first = lane(mask);
+            let others = mask & mask.wrapping_sub(1);
+            if others == 0 {
+                current = node.children[first];
                 continue;
             }
+            let distances = t_near.store();
+            // SAFETY: at most `WIDTH - 1` children wait.
+            unsafe { waiting = push_sorted(&mut stack, waiting, mask, node, &distances) };
+            waiting -= 1;
+            // SAFETY: the nearest has just been written.
+            current = child_of(unsafe { stack.read(waiting) });
         }
-        let limit = best.map_or(ray.t_max, |b| b.t);
+        if current.is_leaf() {
+            test_leaf(bvh, current, ray, &lanes, &mut best);
+        }
         loop {
-            if depth == 0 {
-                return best;
+            if waiting == 0 {
+                return finish(&best);
             }
-            depth -= 1;
-            if stack[depth].1 <= limit {
-                current = stack[depth].0;
+            waiting -= 1;
+            // SAFETY: what waits has been written.
+            let key = unsafe { stack.read(waiting) };
+            if distance_of(key) <= best.t {
+                current = child_of(key);
                 break;
             }
         }
     }
 }
 
-#[inline]
-fn test_leaf(bvh: &Bvh, leaf: Child, ray: &Ray, sheared: &ShearedRay<'_>, best: &mut Option<Hit>) {
-    if leaf.holds_spheres() {
-        for (sphere, primitive) in &bvh.spheres[leaf.range()] {
-            let limited = Ray { t_max: best.map_or(ray.t_max, |b| b.t), ..*ray };
-            if let Some(t) = sphere.intersect(&limited)
-                && best.is_none_or(|b| t < b.t || *primitive < b.primitive)
-            {
-                *best = Some(Hit { t, primitive: *primitive, b1: 0.0, b2: 0.0 });
-            }
+/// Puts the children in `mask`, which are two or more, on the stack, the nearest on top. Returns the new height.
+///
+/// # Safety
+/// As of [`Stack::write`], for all children.
+#[inline(always)]
+unsafe fn push_sorted(
+    stack: &mut Stack<u64>,
+    bottom: usize,
+    mask: u32,
+    node: &Node,
+    distances: &[f32; WIDTH],
+) -> usize {
+    let of = |lane: usize| key(distances[lane], node.children[lane]);
+    let (a, rest) = (of(lane(mask)), mask & mask.wrapping_sub(1));
+    let (b, rest) = (of(lane(rest)), rest & rest.wrapping_sub(1));
+    let (a, b) = (a.min(b), a.max(b));
+    // SAFETY: as the caller promises.
+    unsafe {
+        if rest == 0 {
+            stack.write(bottom, b);
+            stack.write(bottom + 1, a);
+            return bottom + 2;
         }
-    } else {
-        for block in &bvh.blocks[leaf.range()] {
-            block.closest(sheared, ray.t_max, best);
+        let (c, mut rest) = (of(lane(rest)), rest & rest.wrapping_sub(1));
+        let (a, c) = (a.min(c), a.max(c));
+        let (b, c) = (b.min(c), b.max(c));
+        stack.write(bottom, c);
+        stack.write(bottom + 1, b);
+        stack.write(bottom + 2, a);
+        let mut top = bottom + 3;
+        while rest != 0 {
+            let new = of(lane(rest));
+            rest &= rest.wrapping_sub(1);
+            let mut at = top;
+            while at > bottom && stack.read(at - 1) < new {
+                stack.write(at, stack.read(at - 1));
+                at -= 1;
+            }
+            stack.write(at, new);
+            top += 1;
+        }
+        top
+    }
+}
+
+/// The lowest bit of a mask that is not zero.
+#[inline(always)]
+fn lane(mask: u32) -> usize {
+    mask.trailing_zeros() as usize & (WIDTH - 1)
+}
+
+#[inline(always)]
+fn finish(best: &Best) -> Option<Hit> {
+    if best.primitive == Best::NOTHING {
+        return None;
+    }
+    let [b1, b2] = [best.edges[0] / best.det, best.edges[1] / best.det];
+    Some(Hit { t: best.t, primitive: best.primitive, b1, b2 })
+}
+
+#[inline(always)]
+fn test_leaf<L: Lanes, const P: bool>(
+    bvh: &Bvh,
+    leaf: Child,
+    ray: &Ray,
+    lanes: &LaneRay<L, P>,
+    best: &mut Best,
+) {
+    if !leaf.holds_spheres() {
+        // SAFETY: leaves without spheres are ranges of blocks.
+        for block in unsafe { bvh.blocks.get_unchecked(leaf.range()) } {
+            block.closest(lanes, best);
+        }
+        return;
+    }
+    test_spheres(bvh, leaf, ray, best);
+}
+
+#[cold]
+#[inline(never)]
+fn test_spheres(bvh: &Bvh, leaf: Child, ray: &Ray, best: &mut Best) {
+    for (sphere, primitive) in &bvh.spheres[leaf.range()] {
+        if let Some(t) = sphere.intersect(&Ray { t_max: best.t, ..*ray })
+            && (t < best.t || *primitive < best.primitive)
+        {
+            *best = Best { t, primitive: *primitive, edges: [0.0; 2], det: 1.0 };
         }
     }
 }
 
-fn occluded_with<const STACK: usize>(bvh: &Bvh, ray: &Ray) -> bool {
-    let slab = SlabRay::new(ray);
-    let sheared = ShearedRay::new(ray, &slab);
-    let mut stack = [Child::NONE; STACK];
-    let mut depth = 0;
-    let mut current = Child::node(0);
-    if bvh.nodes.is_empty() {
-        return false;
-    }
+/// Whether the ray hits anything.
+#[inline(always)]
+pub(super) fn any_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> bool {
+    if is_parallel(ray) { any_hit_of::<L, true>(bvh, ray) } else { any_hit_of::<L, false>(bvh, ray) }
+}
+
+#[inline(always)]
+fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
+    let lanes = LaneRay::<L, P>::new(ray);
+    let t_max = L::splat(ray.t_max);
+    let (mut stack, mut waiting) = (Stack::new(), 0);
+    let mut current = bvh.root;
     loop {
-        if current.is_leaf() {
-            let hit = if current.holds_spheres() {
-                bvh.spheres[current.range()].iter().any(|(s, _)| s.intersect(ray).is_some())
-            } else {
-                bvh.blocks[current.range()].iter().any(|b| b.any(&sheared, ray.t_max))
-            };
-            if hit {
-                return true;
+        while !current.is_leaf() {
+            // SAFETY: children that are no leaves are indices of nodes.
+            let node = unsafe { bvh.nodes.get_unchecked(current.0 as usize) };
+            let (mut mask, _) = lanes.enter(&node.bounds, t_max);
+            if mask == 0 {
+                break;
             }
-        } else {
-            let node = &bvh.nodes[current.0 as usize];
-            let (mut mask, _) = slab.enter(|row| f32x4::new(node.bounds[row]), ray.t_max);
+            // The largest is the first, and is visited first.
+            current = node.children[lane(mask)];
+            mask &= mask.wrapping_sub(1);
             while mask != 0 {
-                stack[depth] = node.children[mask.trailing_zeros() as usize];
-                depth += 1;
-                mask &= mask - 1;
+                let last = (31 - mask.leading_zeros()) as usize & (WIDTH - 1);
+                mask ^= 1 << last;
+                // SAFETY: all children but one wait.
+                unsafe { stack.write(waiting, node.children[last]) };
+                waiting += 1;
             }
         }
-        if depth == 0 {
+        if current.is_leaf() && is_hit(bvh, current, ray, &lanes) {
+            return true;
+        }
+        if waiting == 0 {
             return false;
         }
-        depth -= 1;
-        current = stack[depth];
+        waiting -= 1;
+        // SAFETY: what waits has been written.
+        current = unsafe { stack.read(waiting) };
     }
+}
+
+/// Whether anything in the leaf is hit.
+#[inline(always)]
+fn is_hit<L: Lanes, const P: bool>(bvh: &Bvh, leaf: Child, ray: &Ray, lanes: &LaneRay<L, P>) -> bool {
+    if leaf.holds_spheres() {
+        return is_sphere_hit(bvh, leaf, ray);
+    }
+    // SAFETY: leaves without spheres are ranges of blocks.
+    for block in unsafe { bvh.blocks.get_unchecked(leaf.range()) } {
+        if block.any(lanes, ray.t_max) {
+            return true;
+        }
+    }
+    false
+}
+
+#[cold]
+#[inline(never)]
+fn is_sphere_hit(bvh: &Bvh, leaf: Child, ray: &Ray) -> bool {
+    bvh.spheres[leaf.range()].iter().any(|(s, _)| s.intersect(ray).is_some())
 }

@@ -1,0 +1,99 @@
+//! The kernels for x86-64 CPUs with AVX2.
+#![allow(unsafe_code)]
+
+use std::arch::x86_64::*;
+
+use super::lanes::Lanes;
+use super::traverse::{any_hit, first_hit};
+use super::{Bvh, Hit, Ray};
+
+/// Whether this CPU can run [`closest`] and [`occluded`].
+pub(super) fn is_available() -> bool {
+    is_x86_feature_detected!("avx2")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("popcnt")
+}
+
+/// The first hit along the ray.
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
+    first_hit::<Avx>(bvh, ray)
+}
+
+/// Whether the ray hits anything.
+#[target_feature(enable = "avx2,bmi1,lzcnt,popcnt")]
+pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
+    any_hit::<Avx>(bvh, ray)
+}
+
+/// One AVX register. Only the two functions above, which need the CPU to have AVX2, make any: that is what
+/// the blocks below rely on. (A trait's methods cannot carry a target feature themselves; they are inlined into
+/// functions that do.)
+#[derive(Clone, Copy)]
+struct Avx(__m256);
+
+impl Lanes for Avx {
+    #[inline(always)]
+    fn splat(v: f32) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_set1_ps(v) })
+    }
+    #[inline(always)]
+    fn load(v: &[f32; 8]) -> Self {
+        // SAFETY: see `Avx`; the array has eight elements, and need not be aligned.
+        Self(unsafe { _mm256_loadu_ps(v.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> [f32; 8] {
+        let mut v = [0.0; 8];
+        // SAFETY: see `Avx`; the array has eight elements, and need not be aligned.
+        unsafe { _mm256_storeu_ps(v.as_mut_ptr(), self.0) };
+        v
+    }
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_add_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_sub_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_mul_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_div_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn min(self, o: Self) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_min_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        // SAFETY: see `Avx`.
+        Self(unsafe { _mm256_max_ps(self.0, o.0) })
+    }
+    #[inline(always)]
+    fn le(self, o: Self) -> u32 {
+        // SAFETY: see `Avx`.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, o.0)) as u32 }
+    }
+    #[inline(always)]
+    fn ge(self, o: Self) -> u32 {
+        // SAFETY: see `Avx`.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(self.0, o.0)) as u32 }
+    }
+    #[inline(always)]
+    fn gt(self, o: Self) -> u32 {
+        // SAFETY: see `Avx`.
+        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(self.0, o.0)) as u32 }
+    }
+}

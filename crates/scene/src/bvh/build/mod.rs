@@ -1,0 +1,84 @@
+//! Construction: a binary tree by binned surface-area heuristic ([`split`]), collapsed into the cheapest
+//! eight-wide one ([`collapse`]).
+
+mod collapse;
+mod reference;
+mod split;
+
+use caustica_math::Vec3;
+use rayon::prelude::*;
+
+use super::sphere::SphereData;
+use super::triangle::TriangleBlock;
+use super::{Bounds, Bvh, Child};
+use collapse::Flat;
+use reference::{Extents, Reference};
+
+/// The deepest that a tree gets. Past [`split::SAH_DEPTH`] binary levels the ranges are halved at the
+/// median, which adds at most 27 more.
+pub(super) const MAX_DEPTH: usize = split::SAH_DEPTH + 28;
+
+/// What the tree is built over.
+pub(super) struct Primitives<'a> {
+    pub positions: &'a [Vec3],
+    pub triangles: &'a [[u32; 3]],
+    pub spheres: &'a [SphereData],
+}
+
+impl Primitives<'_> {
+    fn corners(&self, id: u32) -> [Vec3; 3] {
+        self.triangles[id as usize].map(|v| self.positions[v as usize])
+    }
+
+    fn is_sphere(&self, id: u32) -> bool {
+        id as usize >= self.triangles.len()
+    }
+
+    fn references(&self) -> Vec<Reference> {
+        let triangle = |id: usize| {
+            let id = id as u32;
+            Reference::new(self.corners(id).into_iter().fold(Bounds::EMPTY, Bounds::with), id)
+        };
+        let mut references: Vec<_> = (0..self.triangles.len()).into_par_iter().map(triangle).collect();
+        let ids = self.triangles.len() as u32..;
+        references.extend(self.spheres.iter().zip(ids).map(|(s, id)| Reference::new(s.bounds(), id)));
+        references
+    }
+}
+
+/// Builds the tree.
+pub(super) fn build(primitives: &Primitives<'_>) -> Bvh {
+    let mut references = primitives.references();
+    #[cfg(target_arch = "x86_64")]
+    let avx2 = super::avx2::is_available();
+    #[cfg(not(target_arch = "x86_64"))]
+    let avx2 = false;
+    let mut bvh = Bvh {
+        nodes: Vec::new(),
+        blocks: Vec::new(),
+        spheres: Vec::new(),
+        root: Child::NONE,
+        bounds: Extents::of(&references).boxes.bounds(),
+        avx2,
+    };
+    if references.is_empty() {
+        return bvh;
+    }
+    let tree = split::split(&mut references, 0, 0, primitives);
+    let ids: Vec<u32> = references.iter().map(Reference::id).collect();
+    drop(references);
+    let mut flat = Flat::new(&ids, primitives);
+    bvh.root = flat.root(&tree);
+    let Flat { nodes, blocks, spheres, .. } = flat;
+    bvh.nodes = nodes;
+    bvh.spheres = spheres;
+    bvh.blocks = blocks
+        .into_par_iter()
+        .map(|range| {
+            TriangleBlock::new(
+                ids[range.start as usize..range.end as usize].iter().map(|id| (*id, primitives.corners(*id))),
+            )
+        })
+        .collect();
+    bvh
+}

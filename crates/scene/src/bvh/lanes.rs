@@ -1,0 +1,80 @@
+//! Eight numbers at a time.
+
+use wide::f32x8;
+
+/// Eight `f32` lanes. Every operation rounds as the scalar one does and none is fused, so that all kinds of
+/// lanes give the same bits.
+pub(super) trait Lanes: Copy {
+    fn splat(v: f32) -> Self;
+    fn load(v: &[f32; 8]) -> Self;
+    fn store(self) -> [f32; 8];
+    fn add(self, o: Self) -> Self;
+    fn sub(self, o: Self) -> Self;
+    fn mul(self, o: Self) -> Self;
+    fn div(self, o: Self) -> Self;
+    /// The smaller; unspecified if either is NaN.
+    fn min(self, o: Self) -> Self;
+    /// The larger; unspecified if either is NaN.
+    fn max(self, o: Self) -> Self;
+    /// One bit a lane: self ≤ o. NaN compares false.
+    fn le(self, o: Self) -> u32;
+    /// One bit a lane: self ≥ o. NaN compares false.
+    fn ge(self, o: Self) -> u32;
+    /// One bit a lane: self > o. NaN compares false.
+    fn gt(self, o: Self) -> u32;
+}
+
+/// Lanes for every CPU: two SSE2 or NEON registers, or plain arrays where there is neither.
+#[derive(Clone, Copy)]
+pub(super) struct Portable(f32x8);
+
+impl Lanes for Portable {
+    #[inline(always)]
+    fn splat(v: f32) -> Self {
+        Self(f32x8::splat(v))
+    }
+    #[inline(always)]
+    fn load(v: &[f32; 8]) -> Self {
+        Self(f32x8::new(*v))
+    }
+    #[inline(always)]
+    fn store(self) -> [f32; 8] {
+        self.0.to_array()
+    }
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self(self.0 + o.0)
+    }
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        Self(self.0 - o.0)
+    }
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Self(self.0 * o.0)
+    }
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        Self(self.0 / o.0)
+    }
+    #[inline(always)]
+    fn min(self, o: Self) -> Self {
+        Self(self.0.fast_min(o.0))
+    }
+    #[inline(always)]
+    fn max(self, o: Self) -> Self {
+        Self(self.0.fast_max(o.0))
+    }
+    #[inline(always)]
+    fn le(self, o: Self) -> u32 {
+        self.0.simd_le(o.0).to_bitmask()
+    }
+    #[inline(always)]
+    fn ge(self, o: Self) -> u32 {
+        self.0.simd_ge(o.0).to_bitmask()
+    }
+    #[inline(always)]
+    fn gt(self, o: Self) -> u32 {
+        self.0.simd_gt(o.0).to_bitmask()
+    }
+}
