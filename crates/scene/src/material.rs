@@ -7,7 +7,7 @@ use crate::description::MaterialKind;
 use crate::texture::TextureTable;
 
 /// The material's BSDF at texture coordinates `uv`.
-#[inline]
+#[inline(always)]
 pub fn bsdf_at(kind: &MaterialKind, textures: &TextureTable<'_>, uv: Vec2, w: Wavelengths) -> Bsdf {
     let metal = |eta, k, reflectance| Conductor {
         eta: w.spectrum(eta),

@@ -196,7 +196,7 @@ impl Scene {
     }
 
     /// The first surface along a ray.
-    #[inline]
+    #[inline(always)]
     pub fn closest(&self, ray: &Ray) -> Option<SurfacePoint> {
         let hit: Hit = self.bvh.closest(ray)?;
         Some(self.surfaces.point(&hit, ray.origin, ray.direction))
@@ -215,7 +215,7 @@ impl Scene {
     }
 
     /// The BSDF at a point.
-    #[inline]
+    #[inline(always)]
     pub fn bsdf(&self, point: &SurfacePoint, wavelengths: Wavelengths) -> Bsdf {
         let material = self.surfaces.shapes[point.shape as usize].material;
         let textures = TextureTable { images: &self.images };

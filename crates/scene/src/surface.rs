@@ -325,10 +325,10 @@ impl Surfaces {
     }
 
     /// The point that was hit, coming from `origin` along `direction`.
-    #[inline]
+    #[inline(always)]
     pub fn point(&self, hit: &Hit, origin: Vec3, direction: Vec3) -> SurfacePoint {
         if (hit.primitive as usize) < self.triangles.len() {
-            self.triangle_point(hit.primitive, hit.b1, hit.b2)
+            self.point_between(hit.primitive, &hit.corners, [hit.b1, hit.b2])
         } else {
             let sphere = &self.spheres[hit.primitive as usize - self.triangles.len()];
             let n = origin + direction * hit.t - sphere.data.center;
@@ -339,8 +339,12 @@ impl Surfaces {
     /// The point of a triangle with the given barycentric coordinates of its second and third corner.
     #[inline]
     pub fn triangle_point(&self, primitive: u32, b1: f32, b2: f32) -> SurfacePoint {
-        let corners = self.triangles[primitive as usize];
-        let [a, b, c] = corners.map(|v| self.positions[v as usize]);
+        self.point_between(primitive, &self.corners(primitive), [b1, b2])
+    }
+
+    /// The same, with the corners at hand.
+    #[inline(always)]
+    fn point_between(&self, primitive: u32, &[a, b, c]: &[Vec3; 3], [b1, b2]: [f32; 2]) -> SurfacePoint {
         let b0 = 1.0 - b1 - b2;
         let position = a * b0 + b * b1 + c * b2;
         let normal = (b - a).cross(c - a);
@@ -354,8 +358,9 @@ impl Surfaces {
         let shape = self.triangle_shapes[primitive as usize];
         let flat = &self.shapes[shape as usize];
         let mut shading = normal;
+        let corners = || self.triangles[primitive as usize];
         if flat.first_normal != NONE {
-            let [na, nb, nc] = corners.map(|v| self.shading_normal(flat, v));
+            let [na, nb, nc] = corners().map(|v| self.shading_normal(flat, v));
             let n = na * b0 + nb * b1 + nc * b2;
             let squared = n.length_squared();
             // Normals that cancel, or face the other way, say nothing useful.
@@ -363,11 +368,12 @@ impl Surfaces {
                 shading = n * (1.0 / squared.sqrt());
             }
         }
-        let uv = if flat.first_uv == NONE {
+        let uv = if flat.first_uv == NONE || !flat.needs_uv {
             Vec2::new(b1, b2)
         } else {
             let uv = |v: u32| self.uvs[(v - flat.first_position + flat.first_uv) as usize];
-            uv(corners[0]) * b0 + uv(corners[1]) * b1 + uv(corners[2]) * b2
+            let [a, b, c] = corners();
+            uv(a) * b0 + uv(b) * b1 + uv(c) * b2
         };
         let extent = a.abs().max(b.abs()).max(c.abs()).max_element();
         SurfacePoint {

@@ -41,6 +41,8 @@ pub struct Hit {
     pub b1: f32,
     /// Barycentric coordinate of the triangle's third corner (0 on a sphere).
     pub b2: f32,
+    /// The triangle's corners (zero on a sphere): they are at hand when it is hit, and far away later.
+    pub corners: [Vec3; 3],
 }
 
 /// An axis-aligned box.

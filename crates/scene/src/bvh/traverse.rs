@@ -3,10 +3,12 @@
 
 use std::mem::MaybeUninit;
 
+use caustica_math::Vec3;
+
 use super::build::MAX_DEPTH;
 use super::lanes::{Lanes, Portable};
 use super::ray::{LaneRay, is_parallel};
-use super::triangle::Best;
+use super::triangle::{BLOCK, Best};
 use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
@@ -80,7 +82,7 @@ pub(super) fn first_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
 #[inline(always)]
 fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let lanes = LaneRay::<L, P>::new(ray);
-    let mut best = Best { t: ray.t_max, primitive: Best::NOTHING, edges: [0.0; 2], det: 1.0 };
+    let mut best = Best { t: ray.t_max, primitive: Best::NOTHING, place: 0, edges: [0.0; 2], det: 1.0 };
     let (mut stack, mut waiting) = (Stack::new(), 0);
     let mut current = bvh.root;
     loop {
@@ -109,7 +111,7 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
         }
         loop {
             if waiting == 0 {
-                return finish(&best);
+                return finish(bvh, &best);
             }
             waiting -= 1;
             // SAFETY: what waits has been written.
@@ -174,12 +176,18 @@ fn lane(mask: u32) -> usize {
 }
 
 #[inline(always)]
-fn finish(best: &Best) -> Option<Hit> {
+fn finish(bvh: &Bvh, best: &Best) -> Option<Hit> {
     if best.primitive == Best::NOTHING {
         return None;
     }
     let [b1, b2] = [best.edges[0] / best.det, best.edges[1] / best.det];
-    Some(Hit { t: best.t, primitive: best.primitive, b1, b2 })
+    let corners = if best.place == Best::SPHERE {
+        [Vec3::ZERO; 3]
+    } else {
+        // SAFETY: the place is where a triangle was hit.
+        unsafe { bvh.blocks.get_unchecked(best.place / BLOCK) }.corners(best.place)
+    };
+    Some(Hit { t: best.t, primitive: best.primitive, b1, b2, corners })
 }
 
 #[inline(always)]
@@ -191,9 +199,9 @@ fn test_leaf<L: Lanes, const P: bool>(
     best: &mut Best,
 ) {
     if !leaf.holds_spheres() {
-        // SAFETY: leaves without spheres are ranges of blocks.
-        for block in unsafe { bvh.blocks.get_unchecked(leaf.range()) } {
-            block.closest(lanes, best);
+        for index in leaf.range() {
+            // SAFETY: leaves without spheres are ranges of blocks.
+            unsafe { bvh.blocks.get_unchecked(index) }.closest(index, lanes, best);
         }
         return;
     }
@@ -207,7 +215,7 @@ fn test_spheres(bvh: &Bvh, leaf: Child, ray: &Ray, best: &mut Best) {
         if let Some(t) = sphere.intersect(&Ray { t_max: best.t, ..*ray })
             && (t < best.t || *primitive < best.primitive)
         {
-            *best = Best { t, primitive: *primitive, edges: [0.0; 2], det: 1.0 };
+            *best = Best { t, primitive: *primitive, place: Best::SPHERE, edges: [0.0; 2], det: 1.0 };
         }
     }
 }

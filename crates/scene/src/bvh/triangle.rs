@@ -23,6 +23,8 @@ pub(super) struct Best {
     pub t: f32,
     /// What was hit; [`Best::NOTHING`] if nothing was.
     pub primitive: u32,
+    /// Where it lies among the blocks: the block's index times eight, plus the lane.
+    pub place: usize,
     /// The barycentric coordinates of the second and third corner, times `det`.
     pub edges: [f32; 2],
     pub det: f32,
@@ -31,6 +33,8 @@ pub(super) struct Best {
 impl Best {
     /// No primitive.
     pub(super) const NOTHING: u32 = u32::MAX;
+    /// The place of spheres.
+    pub(super) const SPHERE: usize = usize::MAX;
 }
 
 /// What a block's test found.
@@ -110,9 +114,23 @@ impl TriangleBlock {
         (t.le(t_max) & mask, t)
     }
 
-    /// Replaces `best` if a triangle is hit before it, or at the same distance by a lower id.
+    /// The corners of one triangle.
     #[inline(always)]
-    pub(super) fn closest<L: Lanes, const P: bool>(&self, ray: &LaneRay<L, P>, best: &mut Best) {
+    pub(super) fn corners(&self, lane: usize) -> [Vec3; 3] {
+        let lane = lane % BLOCK;
+        let corner = |[x, y, z]: &[[f32; BLOCK]; 3]| Vec3::new(x[lane], y[lane], z[lane]);
+        [corner(&self.corners[0]), corner(&self.corners[1]), corner(&self.corners[2])]
+    }
+
+    /// Replaces `best` if a triangle of this block, number `index`, is hit before it, or at the same distance by a
+    /// lower id.
+    #[inline(always)]
+    pub(super) fn closest<L: Lanes, const P: bool>(
+        &self,
+        index: usize,
+        ray: &LaneRay<L, P>,
+        best: &mut Best,
+    ) {
         let Some(Crossings { mut mask, t, edges, det }) = self.test(ray, best.t) else { return };
         let ts = t.store();
         let mut winner = None;
@@ -127,6 +145,7 @@ impl TriangleBlock {
             }
         }
         if let Some(lane) = winner {
+            best.place = index * BLOCK + lane;
             best.edges = [edges[0].store()[lane], edges[1].store()[lane]];
             best.det = det.store()[lane];
         }
