@@ -13,6 +13,7 @@ pub mod filter;
 pub mod frame;
 pub mod pdf;
 pub mod spectrum;
+pub mod spherical;
 pub mod stats;
 mod strata;
 pub mod stream;
