@@ -78,7 +78,7 @@ struct FlatSphere {
 }
 
 /// The relative error of a hit's position, with room to spare: a dozen roundings of 2⁻²⁴.
-const POSITION_ERROR: f32 = 1e-6;
+pub(crate) const POSITION_ERROR: f32 = 1e-6;
 
 impl Surfaces {
     /// Flattens the shapes, taking their meshes; pushes warnings.

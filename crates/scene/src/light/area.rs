@@ -3,6 +3,8 @@ use std::f32::consts::PI;
 use caustica_math::elementary::safe_sqrt;
 use caustica_math::{AreaPdf, Distribution1d, Frame, Spectrum, Vec2, Vec3, warp};
 
+use super::quad::Quad;
+use super::seen::{Reach, Seen};
 use super::{Anchor, Emission, EmissionPdf, LightPoint, Surroundings};
 use crate::bvh::SphereData;
 use crate::description::Texture;
@@ -22,7 +24,9 @@ enum Surface {
         choice: Distribution1d,
         /// Probability of each triangle over its area.
         density: Vec<f32>,
+        reach: Reach,
     },
+    Quad(Box<Quad>),
     Sphere {
         primitive: u32,
         data: SphereData,
@@ -31,6 +35,9 @@ enum Surface {
 
 /// The part of a lamp's sampling that goes by area alone, so that a texture's dark spots are still found.
 const UNIFORM_PART: f32 = 0.05;
+
+/// By how much of it the two densities of a parallelogram's halves may differ where it is sampled evenly.
+const EVEN: f32 = 0.01;
 
 /// Where a triangle's emission is looked up to estimate its power: centroids of a 4 × 4 subdivision.
 const PROBES: u32 = 4;
@@ -58,12 +65,22 @@ impl AreaLight {
         let floor = (UNIFORM_PART * mean).max(least);
         let weights: Vec<f32> = areas.iter().zip(&means).map(|(a, m)| a * (m + floor)).collect();
         let choice = Distribution1d::new(&weights)?;
-        let density = areas
+        let density: Vec<f32> = areas
             .iter()
             .enumerate()
             .map(|(i, a)| if *a > 0.0 { choice.mass(i).0 / a } else { 0.0 })
             .collect();
-        let surface = Surface::Mesh { first_primitive: first, choice, density };
+        let quad = match density[..] {
+            [a, b] if (a - b).abs() <= EVEN * a => Quad::new([first, first + 1], around.surfaces),
+            _ => None,
+        };
+        let surface = quad.map_or_else(
+            || {
+                let reach = Reach::new(first..first + shape.primitive_count, around.surfaces);
+                Surface::Mesh { first_primitive: first, choice, density, reach }
+            },
+            |quad| Surface::Quad(Box::new(quad)),
+        );
         Some((Self { radiance, surface }, PI * mean.max(least) * total_area as f32))
     }
 
@@ -80,20 +97,33 @@ impl AreaLight {
             Surface::Mesh { first_primitive, density, .. } => {
                 AreaPdf(density[(primitive - first_primitive) as usize])
             }
+            Surface::Quad(quad) => quad.area_pdf(primitive),
             Surface::Sphere { data, .. } => AreaPdf(1.0 / (4.0 * PI * data.radius * data.radius)),
         }
     }
 
     /// A point by area and emission; `choice` picks the triangle.
-    fn sample_point(&self, choice: f32, u: [f32; 2], around: &Surroundings<'_>) -> SurfacePoint {
+    fn sample_point(
+        &self,
+        light: u32,
+        choice: f32,
+        u: [f32; 2],
+        around: &Surroundings<'_>,
+    ) -> (LightPoint, AreaPdf) {
         match &self.surface {
-            Surface::Mesh { first_primitive, choice: table, .. } => {
+            Surface::Mesh { first_primitive, choice: table, density, .. } => {
                 let [b1, b2] = warp::uniform_triangle(u);
-                let triangle = first_primitive + table.sample(choice).index as u32;
-                around.surfaces.triangle_point(triangle, b1, b2)
+                let index = table.sample(choice).index;
+                let p = around.surfaces.triangle_point(first_primitive + index as u32, b1, b2);
+                (LightPoint::on_surface(light, &p), AreaPdf(density[index]))
+            }
+            Surface::Quad(quad) => {
+                let point = quad.point(light, u);
+                (point, quad.area_pdf(point.primitive))
             }
             Surface::Sphere { primitive, .. } => {
-                around.surfaces.sphere_point(*primitive, warp::uniform_sphere(u))
+                let p = around.surfaces.sphere_point(*primitive, warp::uniform_sphere(u));
+                (LightPoint::on_surface(light, &p), self.area_pdf(*primitive))
             }
         }
     }
@@ -105,19 +135,17 @@ impl AreaLight {
         (u, v): ([f32; 2], [f32; 2]),
         around: &Surroundings<'_>,
     ) -> Option<Emission> {
-        let p = self.sample_point(choice, u, around);
+        let (point, pdf) = self.sample_point(light, choice, u, around);
         let local = warp::cosine_hemisphere(v);
-        let direction = Frame::from_normal(p.normal).to_world(local);
-        let point = LightPoint::on_surface(light, &p);
-        let cos = p.normal.dot(direction);
-        let pdf =
-            EmissionPdf { point: self.area_pdf(p.primitive), direction: warp::cosine_hemisphere_pdf(cos) };
+        let direction = Frame::from_normal(point.normal).to_world(local);
+        let cos = point.normal.dot(direction);
+        let pdf = EmissionPdf { point: pdf, direction: warp::cosine_hemisphere_pdf(cos) };
         let origin = point.off_surface(direction);
         (cos > 0.0).then(|| Emission {
             point,
             origin,
             direction,
-            radiance: self.radiance_at(p.uv, around),
+            radiance: self.radiance_at(point.uv, around),
             cos,
             pdf,
         })
@@ -130,24 +158,62 @@ impl AreaLight {
         (choice, u): (f32, [f32; 2]),
         around: &Surroundings<'_>,
     ) -> Option<(LightPoint, AreaPdf)> {
-        if let Surface::Sphere { primitive, data } = &self.surface
-            && let Some(cone) = Cone::new(data, from)
-        {
-            let p = around.surfaces.sphere_point(*primitive, cone.sample(u));
-            let point = LightPoint::on_surface(light, &p);
-            return cone.area_pdf(from, &point).map(|pdf| (point, pdf));
+        match &self.surface {
+            Surface::Quad(quad) => match quad.seen(from) {
+                Seen::Behind => return None,
+                Seen::ByArea => {}
+                Seen::Near(near) => {
+                    let point = quad.point(light, near.shape.sample(u));
+                    return Some((point, near.area_pdf(from, &point)));
+                }
+            },
+            Surface::Mesh { first_primitive, choice: table, reach, .. } => {
+                let chosen = table.sample(choice);
+                let triangle = first_primitive + chosen.index as u32;
+                match reach.triangle(|| around.surfaces.corners(triangle), from) {
+                    Seen::Behind => return None,
+                    Seen::ByArea => {}
+                    Seen::Near(near) => {
+                        let [b1, b2] = near.shape.sample(u);
+                        let p = around.surfaces.triangle_point(triangle, b1, b2);
+                        let point = LightPoint::on_surface(light, &p);
+                        return Some((point, near.area_pdf(from, &point) * chosen.mass));
+                    }
+                }
+            }
+            Surface::Sphere { primitive, data } => {
+                if let Some(cone) = Cone::new(data, from) {
+                    let p = around.surfaces.sphere_point(*primitive, cone.sample(u));
+                    let point = LightPoint::on_surface(light, &p);
+                    return cone.area_pdf(from, &point).map(|pdf| (point, pdf));
+                }
+            }
         }
-        let p = self.sample_point(choice, u, around);
-        Some((LightPoint::on_surface(light, &p), self.area_pdf(p.primitive)))
+        Some(self.sample_point(light, choice, u, around))
     }
 
-    pub(super) fn towards_pdf(&self, from: Vec3, point: &LightPoint, _: &Surroundings<'_>) -> AreaPdf {
-        if let Surface::Sphere { data, .. } = &self.surface
-            && let Some(cone) = Cone::new(data, from)
-        {
-            return cone.area_pdf(from, point).unwrap_or(AreaPdf::ZERO);
+    pub(super) fn towards_pdf(&self, from: Vec3, point: &LightPoint, around: &Surroundings<'_>) -> AreaPdf {
+        match &self.surface {
+            Surface::Quad(quad) => match quad.seen(from) {
+                Seen::Behind => AreaPdf::ZERO,
+                Seen::ByArea => quad.area_pdf(point.primitive),
+                Seen::Near(near) => near.area_pdf(from, point),
+            },
+            Surface::Mesh { first_primitive, choice, reach, .. } => {
+                match reach.triangle(|| around.surfaces.corners(point.primitive), from) {
+                    Seen::Behind => AreaPdf::ZERO,
+                    Seen::ByArea => self.area_pdf(point.primitive),
+                    Seen::Near(near) => {
+                        let mass = choice.mass((point.primitive - first_primitive) as usize);
+                        near.area_pdf(from, point) * mass
+                    }
+                }
+            }
+            Surface::Sphere { data, .. } => match Cone::new(data, from) {
+                Some(cone) => cone.area_pdf(from, point).unwrap_or(AreaPdf::ZERO),
+                None => self.area_pdf(point.primitive),
+            },
         }
-        self.area_pdf(point.primitive)
     }
 }
 

@@ -7,6 +7,8 @@
 mod area;
 mod delta;
 mod environment;
+mod quad;
+mod seen;
 mod table;
 
 use caustica_math::{AreaPdf, SolidAnglePdf, Spectrum, Vec2, Vec3, Wavelengths};

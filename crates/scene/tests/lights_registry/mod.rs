@@ -3,6 +3,8 @@
 // Each test binary uses its own part of this.
 #![allow(dead_code)]
 
+mod polygons;
+
 use std::f64::consts::PI;
 
 use caustica_math::{Rgb, SampleStream, StreamId, Transform, Vec3, Wavelengths};
@@ -91,6 +93,7 @@ fn view(from: [f32; 3], towards: [f32; 3], irradiance: impl Into<Option<f64>>) -
 pub fn examples() -> Vec<Example> {
     let mut all = spheres();
     all.extend(meshes());
+    all.extend(polygons::examples());
     all.extend(points());
     all.extend(infinite());
     all
