@@ -73,18 +73,19 @@ pub fn pow(x: f32, y: f32) -> f32 {
 /// times as fast as reducing a radian argument, which is why warps use it.
 #[inline]
 pub fn sin_cos_turns(turns: f32) -> (f32, f32) {
-    let quarter = (turns * 4.0 + 0.5).floor();
-    let x = (turns * 4.0 - quarter) * FRAC_PI_2;
+    // By truncation: `floor` is a function call on CPUs that have no instruction for it.
+    let quarter = (turns * 4.0 + 0.5) as i32;
+    let x = (turns * 4.0 - quarter as f32) * FRAC_PI_2;
     let x2 = x * x;
     let sin =
         x * (1.0 + x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
     let cos = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40320.0))));
-    match quarter as i32 & 3 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
+    // No branch here: nobody can predict the quarter.
+    let quarter = quarter as u32;
+    let swap = (sin.to_bits() ^ cos.to_bits()) & (quarter & 1).wrapping_neg();
+    let sign = |negative: u32| (negative & 2) << 30;
+    let signed = |x: f32, negative: u32| f32::from_bits(x.to_bits() ^ swap ^ sign(negative));
+    (signed(sin, quarter), signed(cos, quarter + 1))
 }
 
 /// The angle of the point (x, y) of the upper half-plane (y ≥ 0), in radians in [0, π]; zero at the origin.
@@ -95,14 +96,28 @@ pub fn upper_angle(y: f32, x: f32) -> f32 {
     const TAN_PI_8: f32 = 0.414_213_57;
     let right = x.abs();
     // Turned by nothing, an eighth or a quarter of a turn, so that the angle that is left is small.
-    let (low, high) = (y <= right * TAN_PI_8, y * TAN_PI_8 > right);
-    let turned = if low { (y, right, 0.0) } else { (y - right, y + right, FRAC_PI_4) };
-    let (opposite, adjacent, turn) = if high { (-right, y, FRAC_PI_2) } else { turned };
+    let low = mask(y <= right * TAN_PI_8);
+    let high = mask(y * TAN_PI_8 > right);
+    let opposite = select(low, y, select(high, -right, y - right));
+    let adjacent = select(low, right, select(high, y, y + right));
+    let turn = select(low, 0.0, select(high, FRAC_PI_2, FRAC_PI_4));
     let t = opposite / adjacent.max(f32::MIN_POSITIVE);
     let t2 = t * t;
     let series = -0.333_329_5 + t2 * (0.199_776_98 + t2 * (-0.138_775_38 + t2 * 0.080_532_34));
     let angle = turn + (t + t * t2 * series);
-    if x < 0.0 { PI - angle } else { angle }
+    select(mask(x < 0.0), PI - angle, angle)
+}
+
+/// All bits or none.
+#[inline]
+fn mask(condition: bool) -> u32 {
+    u32::from(condition).wrapping_neg()
+}
+
+/// One of two numbers without a branch, where no branch could be predicted.
+#[inline]
+fn select(mask: u32, yes: f32, no: f32) -> f32 {
+    f32::from_bits(no.to_bits() ^ ((yes.to_bits() ^ no.to_bits()) & mask))
 }
 
 /// The square root, with negative arguments (from rounding) taken as zero.

@@ -138,9 +138,9 @@ impl SphericalRectangle {
         self.solid_angle
     }
 
-    /// The coordinates of a point along the sides, each in [0, 1], uniform in solid angle.
+    /// How far along the sides a point is from the corner, uniform in solid angle.
     #[inline]
-    pub fn sample(&self, u: [f32; 2]) -> [f32; 2] {
+    pub fn sample(&self, u: [f32; 2]) -> [f64; 2] {
         let ([x0, x1], [y0, y1]) = (self.x, self.y);
         let x = self.column(u[0]).clamp(x0, x1);
         // The sine at which y is seen in the plane of its column is uniform.
@@ -149,7 +149,7 @@ impl SphericalRectangle {
         let (low, high) = (sine(y0), sine(y1));
         let s = low + f64::from(u[1]) * (high - low);
         let y = (s * (d2 / (1.0 - s * s).max(f64::EPSILON)).sqrt()).clamp(y0, y1);
-        [((x - x0) / (x1 - x0)) as f32, ((y - y0) / (y1 - y0)) as f32]
+        [x - x0, y - y0]
     }
 
     /// The x up to which the rectangle covers the share `u` of its solid angle.
@@ -214,6 +214,7 @@ mod tests {
             let h = libm::expf(log_h);
             let r = SphericalRectangle::new([x0, y0].map(f64::from), [width, 1.0].map(f64::from), f64::from(h));
             let [a, b] = r.sample([u, v]);
+            let [a, b] = [(a / f64::from(width)) as f32, b as f32];
             let [x, y] = [[x0, x0 + width], [y0, y0 + 1.0]].map(|e| e.map(f64::from));
             let exact = {
                 let corner = |x: f64, y: f64| [x, y, f64::from(h)];

@@ -72,7 +72,7 @@ fn rectangles() {
         assert!((told / total - 1.0).abs() < 1e-4, "{corner:?}: {told} sr instead of {total}");
         let sample = |u| {
             let [x, y] = rectangle.sample(u);
-            cell(x) * CELLS + cell(y)
+            cell((x / size[0]) as f32) * CELLS + cell((y / size[1]) as f32)
         };
         let p = judge(index, sample, &shares);
         assert!(p > alpha, "{corner:?} {size:?} {height}: p = {p:.2e}, α = {alpha:.2e}");

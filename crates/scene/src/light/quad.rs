@@ -48,12 +48,13 @@ struct Axes {
     y: [f64; 3],
     normal: [f64; 3],
     size: [f64; 2],
+    inverse_size: [f64; 2],
 }
 
 /// A parallelogram as it is seen from near by.
 pub enum Shape {
-    /// At once.
-    Rectangle(SphericalRectangle),
+    /// At once; with one over the lengths of its sides.
+    Rectangle(SphericalRectangle, [f64; 2]),
     /// In two parts.
     Triangles([SphericalTriangle; 2]),
 }
@@ -76,7 +77,8 @@ impl Quad {
             halves,
             center: (p[at(i + 1)] + p[at(i + 2)]) * 0.5,
             normal: halves[0].normal,
-            near: NEAR * (u.length_squared() + v.length_squared()),
+            near: std::env::var("NEAR").map_or(NEAR, |v| v.parse().unwrap())
+                * (u.length_squared() + v.length_squared()),
             least_height: least_height(halves[0].offset.max(halves[1].offset)),
             rectangle: Axes::new([u, v]).filter(|_| gap <= RECTANGLE * short),
         })
@@ -130,7 +132,7 @@ impl Quad {
                 return Seen::ByArea;
             }
             let shape = SphericalRectangle::new([dot(axes.x), dot(axes.y)], axes.size, height);
-            (height, Shape::Rectangle(shape), shape.solid_angle())
+            (height, Shape::Rectangle(shape, axes.inverse_size), shape.solid_angle())
         } else {
             let height = -dot(self.normal.to_array().map(f64::from));
             if height <= self.least_height {
@@ -152,7 +154,10 @@ impl Shape {
     #[inline]
     pub fn sample(&self, u: [f32; 2]) -> [f32; 2] {
         match self {
-            Self::Rectangle(rectangle) => rectangle.sample(u),
+            Self::Rectangle(rectangle, [a, b]) => {
+                let [x, y] = rectangle.sample(u);
+                [(x * a) as f32, (y * b) as f32]
+            }
             Self::Triangles([first, second]) => {
                 let [a, b] = [first.solid_angle(), second.solid_angle()];
                 let t = u[0] * (a + b);
@@ -174,7 +179,13 @@ impl Axes {
         let size = [u, v].map(|s| dot(s, s).sqrt());
         let (x, y) = (u.map(|c| c / size[0]), v.map(|c| c / size[1]));
         let normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
-        (dot(x, y).abs() <= f64::from(RECTANGLE)).then_some(Self { x, y, normal, size })
+        (dot(x, y).abs() <= f64::from(RECTANGLE)).then_some(Self {
+            x,
+            y,
+            normal,
+            size,
+            inverse_size: size.map(|s| 1.0 / s),
+        })
     }
 }
 

@@ -9,9 +9,10 @@ use crate::surface::{POSITION_ERROR, Surfaces};
 /// A flat lamp is sampled by solid angle from places whose squared distance from its centre is less than this
 /// many times the sum of its squared sides (a square: the squared diagonal).
 ///
-/// From farther away, cos/d² varies so little over the lamp that solid angles only cost time. Measured on boxes
-/// with lamps of several sizes.
-pub const NEAR: f32 = 1.0;
+/// From farther away cos/d² varies so little over the lamp that solid angles, which take three times as long, do
+/// not pay. Measured by relative error × time of `path` and `direct_ems` in boxes with five lamps: between 0.5 and 1
+/// is best, and flat.
+pub const NEAR: f32 = 0.75;
 
 /// From a lower height above a lamp than that many times the rounding of positions, nobody can say how it is seen.
 const LEAST_HEIGHT: f32 = 64.0;
