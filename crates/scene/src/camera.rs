@@ -301,6 +301,11 @@ impl Camera {
         )
     }
 
+    /// Whether it makes use of the point of the lens that it is given.
+    pub fn has_lens(&self) -> bool {
+        matches!(self.projection, Projection::Lens { radius, .. } if radius > 0.0)
+    }
+
     /// Whether the picture goes on beyond its edges: see [`Camera::aliases`].
     #[inline]
     pub fn wraps(&self) -> bool {

@@ -9,7 +9,7 @@ use caustica_scene::description::Integrator;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::kernel::{EyeSample, Kernel};
-use crate::numbers::{Bounces, EyeNumbers};
+use crate::numbers::EyeNumbers;
 use crate::sink::Sink;
 use crate::vertex::Vertex;
 
@@ -27,11 +27,11 @@ impl Kernel<'_> {
             Integrator::Normals => Rgb(p.frame.z.abs().to_array()),
             Integrator::Depth => Rgb::splat((p.position - ray.origin).length()),
             Integrator::Ao => {
-                let d = p.frame.to_world(warp::cosine_hemisphere(direction(numbers)));
+                let d = p.frame.to_world(warp::cosine_hemisphere(numbers.direction()));
                 Rgb::splat(self.open(p, d, f32::INFINITY))
             }
             Integrator::Av { length } => {
-                let mut local = warp::uniform_sphere(direction(numbers));
+                let mut local = warp::uniform_sphere(numbers.direction());
                 local.z = local.z.abs();
                 Rgb::splat(self.open(p, p.frame.to_world(local), length))
             }
@@ -69,10 +69,4 @@ impl Kernel<'_> {
         let arriving = self.wavelengths.spectrum(irradiance) * self.open(p, towards, f32::INFINITY);
         self.wavelengths.rgb(scatter.value * arriving)
     }
-}
-
-/// The numbers of a direction at the first surface.
-fn direction(numbers: &mut EyeNumbers) -> [f32; 2] {
-    let [u0, u1, _] = numbers.bounce(0).u;
-    [u0, u1]
 }

@@ -7,7 +7,7 @@ use caustica_scene::bvh::Ray;
 use caustica_scene::camera::CameraRay;
 use caustica_scene::description::Integrator;
 
-use crate::numbers::EyeNumbers;
+use crate::numbers::{EyeNumbers, Needs};
 use crate::sink::Sink;
 use crate::strategy::{Classes, StrategySet};
 use crate::walk::{Flight, Subpath};
@@ -78,6 +78,7 @@ pub struct Kernel<'a> {
     /// Light paths in one pass: as many as the window has pixels.
     pub(crate) light_paths: f32,
     pub(crate) wavelengths: Wavelengths,
+    pub(crate) needs: Needs,
 }
 
 /// Buffers that are used again for every sample of a thread.
@@ -111,6 +112,7 @@ impl<'a> Kernel<'a> {
             roulette_start: settings.roulette_start() as usize,
             light_paths: window.width as f32 * window.height as f32,
             wavelengths: Wavelengths::Rgb,
+            needs: Needs::of(scene),
             settings,
         }
     }
@@ -155,7 +157,7 @@ impl<'a> Kernel<'a> {
 
     /// Draws the film position, by the pixel filter, and the camera ray.
     pub(crate) fn eye_sample(&self, id: SampleId) -> EyeSample {
-        let mut numbers = EyeNumbers::new(self.settings.sampler, id);
+        let mut numbers = EyeNumbers::new(self.settings.sampler, id, self.needs);
         let (offset, filter_weight) = self.filter.sample(numbers.film());
         let [x, y] = id.pixel.map(|c| c as f32 + 0.5);
         let film = Vec2::new(x + offset.x, y + offset.y);

@@ -13,7 +13,7 @@ use crate::vertex::Vertex;
 
 impl Kernel<'_> {
     pub(crate) fn trace_light<S: Sink>(&self, id: SampleId, sink: &mut S) {
-        let mut numbers = LightNumbers::new(self.settings.sampler, id);
+        let mut numbers = LightNumbers::new(self.settings.sampler, id, self.needs);
         let [choice, u, v] = numbers.emission();
         let lights = self.scene.lights(self.wavelengths);
         let Some(emission) = lights.sample_emission(choice, u, v) else { return };
@@ -29,10 +29,11 @@ impl Kernel<'_> {
             let Some(point) = self.scene.closest(&ray) else { return };
             let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths);
             self.splat_surface(&vertex, throughput, numbers.lens(bounce - 1), sink);
-            let drawn = numbers.bounce(bounce - 1);
+            let roulette = bounce >= self.roulette_start;
+            let drawn = numbers.bounce(bounce - 1, &vertex.bsdf, roulette);
             let Some((direction, s, _)) = vertex.sample(Walk::FromLight, drawn.u) else { return };
             throughput *= s.value * (1.0 / s.forward.0);
-            if bounce >= self.roulette_start {
+            if roulette {
                 let survival = (throughput.max_lane() / first).min(0.95);
                 if drawn.survival >= survival {
                     return;

@@ -6,6 +6,8 @@
 
 use caustica_math::stream::GROUP;
 use caustica_math::{SampleId, SampleStream, Sampler};
+use caustica_scene::Scene;
+use caustica_scene::bsdf::Bsdf;
 
 // The slots of a group; those of the first group belong to the walk's start, those of each next one to a bounce.
 const FILM: u64 = 0;
@@ -27,6 +29,21 @@ pub(crate) struct Bounce {
     pub survival: f32,
 }
 
+/// What a scene draws numbers for at all. Those that nothing depends on are not made, and are zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Needs {
+    /// Whether lamps, or parts of one, are to be chosen from.
+    choice: bool,
+    /// Whether the camera has a lens.
+    lens: bool,
+}
+
+impl Needs {
+    pub fn of(scene: &Scene) -> Self {
+        Self { choice: scene.lamps().offer_a_choice(), lens: scene.camera.has_lens() }
+    }
+}
+
 /// A walk's numbers.
 pub(crate) trait Bounces {
     /// The stream of all.
@@ -38,21 +55,30 @@ pub(crate) trait Bounces {
         self.stream().seek(group as u64 * GROUP + slot).next_2d()
     }
 
-    /// Those of the bounce at the surface vertex of that index (from 0).
     #[inline]
-    fn bounce(&mut self, vertex: usize) -> Bounce {
-        let [u0, u1] = self.draw(vertex + 1, BOUNCE);
-        let [u2, survival] = self.draw(vertex + 1, LOBE);
+    fn draw_if(&mut self, needed: bool, group: usize, slot: u64) -> [f32; 2] {
+        if needed { self.draw(group, slot) } else { [0.0; 2] }
+    }
+
+    /// Those of the bounce at the surface vertex of that index (from 0), as far as the BSDF there and roulette need
+    /// them.
+    #[inline]
+    fn bounce(&mut self, vertex: usize, bsdf: &Bsdf, roulette: bool) -> Bounce {
+        let [u0, u1] = self.draw_if(!bsdf.is_delta(), vertex + 1, BOUNCE);
+        let [u2, survival] = self.draw_if(roulette || bsdf.has_lobes(), vertex + 1, LOBE);
         Bounce { u: [u0, u1, u2], survival }
     }
 }
 
 /// The numbers of a sample's eye path.
-pub(crate) struct EyeNumbers(SampleStream);
+pub(crate) struct EyeNumbers {
+    stream: SampleStream,
+    needs: Needs,
+}
 
 impl EyeNumbers {
-    pub fn new(sampler: Sampler, id: SampleId) -> Self {
-        Self(SampleStream::of_sample(sampler, id, 0))
+    pub fn new(sampler: Sampler, id: SampleId, needs: Needs) -> Self {
+        Self { stream: SampleStream::of_sample(sampler, id, 0), needs }
     }
 
     /// Of the place on the film.
@@ -62,52 +88,60 @@ impl EyeNumbers {
 
     /// Of the place on the lens.
     pub fn lens(&mut self) -> [f32; 2] {
-        self.draw(0, LENS)
+        self.draw_if(self.needs.lens, 0, LENS)
+    }
+
+    /// Of a direction at the first surface vertex.
+    pub fn direction(&mut self) -> [f32; 2] {
+        self.draw(1, BOUNCE)
     }
 
     /// Of next-event estimation at the surface vertex of that index: the choice of the lamp, the place on it.
     #[inline]
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
-        (self.draw(vertex, CHOICE), self.draw(vertex, JOINED))
+        (self.draw_if(self.needs.choice, vertex, CHOICE), self.draw(vertex, JOINED))
     }
 }
 
 impl Bounces for EyeNumbers {
     #[inline]
     fn stream(&mut self) -> &mut SampleStream {
-        &mut self.0
+        &mut self.stream
     }
 }
 
 /// The numbers of a sample's light path.
-pub(crate) struct LightNumbers(SampleStream);
+pub(crate) struct LightNumbers {
+    stream: SampleStream,
+    needs: Needs,
+}
 
 impl LightNumbers {
-    pub fn new(sampler: Sampler, id: SampleId) -> Self {
-        Self(SampleStream::of_sample(sampler, id, 1))
+    pub fn new(sampler: Sampler, id: SampleId, needs: Needs) -> Self {
+        Self { stream: SampleStream::of_sample(sampler, id, 1), needs }
     }
 
     /// Of the emission: the choice of the lamp, the place on it, the direction.
     pub fn emission(&mut self) -> [[f32; 2]; 3] {
-        [CHOICE, LAMP_POINT, LAMP_DIRECTION].map(|slot| self.draw(0, slot))
+        [self.draw_if(self.needs.choice, 0, CHOICE), self.draw(0, LAMP_POINT), self.draw(0, LAMP_DIRECTION)]
     }
 
     /// Of the place on the lens that the lamp's point is joined with.
     pub fn lamp_lens(&mut self) -> [f32; 2] {
-        self.draw(0, JOINED)
+        self.draw_if(self.needs.lens, 0, JOINED)
     }
 
     /// Of the place on the lens that the surface vertex of that index is joined with.
     #[inline]
     pub fn lens(&mut self, vertex: usize) -> [f32; 2] {
         // That of the group before would be joined better, but it is the lamp's.
-        self.draw(vertex + 1, JOINED)
+        self.draw_if(self.needs.lens, vertex + 1, JOINED)
     }
 }
 
 impl Bounces for LightNumbers {
     #[inline]
     fn stream(&mut self) -> &mut SampleStream {
-        &mut self.0
+        &mut self.stream
     }
 }

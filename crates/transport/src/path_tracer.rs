@@ -72,7 +72,8 @@ impl Kernel<'_> {
             if chain == Chain::Ends && vertex.is_connectible() {
                 break;
             }
-            let bounce = numbers.bounce(edges - 1);
+            let roulette = edges >= self.roulette_start;
+            let bounce = numbers.bounce(edges - 1, &vertex.bsdf, roulette);
             let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
             throughput *= s.value * (1.0 / s.forward.0);
             radiance_scale *= vertex.radiance_scale(direction);
@@ -81,7 +82,7 @@ impl Kernel<'_> {
             } else {
                 Arrival::Sampled { from: vertex.point.position, pdf: s.forward.0 }
             };
-            if edges >= self.roulette_start {
+            if roulette {
                 // Nori's rule: the throughput without the radiance scale of refraction, at most 0.99.
                 let survival = (throughput.max_lane() / radiance_scale).min(0.99);
                 if bounce.survival >= survival {

@@ -113,7 +113,8 @@ impl Kernel<'_> {
             if path.vertices.len() == max_edges {
                 return;
             }
-            let bounce = numbers.bounce(path.vertices.len() - 1);
+            let roulette = path.vertices.len() >= self.roulette_start;
+            let bounce = numbers.bounce(path.vertices.len() - 1, &vertex.bsdf, roulette);
             if !self.scatter(walk, &mut flight, &bounce, path)
                 || !self.survives(&mut flight, first_throughput, (path.vertices.len(), &bounce))
             {

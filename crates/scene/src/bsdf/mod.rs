@@ -146,6 +146,15 @@ impl Bsdf {
         }
     }
 
+    /// Whether [`Bsdf::sample`] asks for its third number.
+    #[inline]
+    pub fn has_lobes(&self) -> bool {
+        match self {
+            Self::Dielectric(_) | Self::RoughDielectric(_) | Self::Microfacet(_) => true,
+            Self::Diffuse(_) | Self::Mirror { .. } | Self::Conductor(_) | Self::RoughConductor(_) => false,
+        }
+    }
+
     /// The factor by which passing from the side of `to_light` to that of `to_camera` scales radiance, given
     /// the cosines of the two: (n_camera/n_light)², or one on the same side.
     #[inline]

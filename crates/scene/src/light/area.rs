@@ -90,6 +90,11 @@ impl AreaLight {
         around.textures.spectrum(&self.radiance, uv, around.wavelengths)
     }
 
+    /// Whether a part of it is to be chosen.
+    pub(super) fn offers_a_choice(&self) -> bool {
+        matches!(self.surface, Surface::Mesh { .. })
+    }
+
     /// The density of points by area and emission on that primitive.
     #[inline]
     pub fn area_pdf(&self, primitive: u32) -> AreaPdf {

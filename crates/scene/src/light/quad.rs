@@ -77,8 +77,7 @@ impl Quad {
             halves,
             center: (p[at(i + 1)] + p[at(i + 2)]) * 0.5,
             normal: halves[0].normal,
-            near: std::env::var("NEAR").map_or(NEAR, |v| v.parse().unwrap())
-                * (u.length_squared() + v.length_squared()),
+            near: NEAR * (u.length_squared() + v.length_squared()),
             least_height: least_height(halves[0].offset.max(halves[1].offset)),
             rectangle: Axes::new([u, v]).filter(|_| gap <= RECTANGLE * short),
         })

@@ -49,6 +49,14 @@ impl Lights {
         self.choice.is_none()
     }
 
+    /// Whether [`LightQuery`]'s samples depend on `choice`: there are several lamps, or one of several parts.
+    pub fn offer_a_choice(&self) -> bool {
+        match &self.lights[..] {
+            [Light::Area(lamp)] => lamp.offers_a_choice(),
+            lamps => lamps.len() > 1,
+        }
+    }
+
     /// The sum of all powers, in W.
     pub fn power(&self) -> f64 {
         self.power

@@ -83,7 +83,7 @@ impl Joined {
 impl Kernel<'_> {
     pub(crate) fn bdpt<S: Sink>(&self, id: SampleId, scratch: &mut Scratch, sink: &mut S) {
         let EyeSample { film, filter_weight, ray, mut numbers } = self.eye_sample(id);
-        let mut light_numbers = LightNumbers::new(self.settings.sampler, id);
+        let mut light_numbers = LightNumbers::new(self.settings.sampler, id, self.needs);
         let classes = self.classes;
         if classes.hit || classes.next_event || classes.inner {
             self.grow(Self::camera_flight(&ray), &Start::Camera, &mut numbers, &mut scratch.eye);
