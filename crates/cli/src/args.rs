@@ -100,7 +100,7 @@ pub struct Method {
     /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_depth: Option<u32>,
-    /// Bounces before Russian roulette begins [default: 1 for bdpt and light, 3 for the others]
+    /// Bounces before Russian roulette begins [default: 1 for bdpt and light, 5 for the others]
     #[arg(long, value_name = "N")]
     pub roulette_depth: Option<u32>,
     /// Seed of the sample streams

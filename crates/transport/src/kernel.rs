@@ -21,7 +21,7 @@ pub struct Settings {
     /// The most edges that a path may have: 1 is lamps seen directly, 2 adds direct light. `None`: no limit.
     pub max_depth: Option<u32>,
     /// After how many bounces roulette begins. `None`: at the first for `bdpt` and `light`, whose cost grows with
-    /// every pair of vertices, and at the third for the others.
+    /// every pair of vertices, and at the fifth for the others.
     pub roulette_start: Option<u32>,
     /// The seed of all sample streams.
     pub seed: u64,
@@ -55,7 +55,7 @@ impl Settings {
     /// After how many bounces roulette begins, by default or as set.
     pub fn roulette_start(&self) -> u32 {
         let pairs = matches!(self.integrator, Integrator::Bdpt | Integrator::Light);
-        self.roulette_start.unwrap_or(if pairs { 1 } else { 3 })
+        self.roulette_start.unwrap_or(if pairs { 1 } else { 5 })
     }
 }
 

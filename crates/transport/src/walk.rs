@@ -86,7 +86,7 @@ impl Kernel<'_> {
         let walk = start.walk();
         // A light path still needs an edge to the camera.
         let max_edges = self.max_edges - usize::from(walk == Walk::FromLight);
-        let first_throughput = self.wavelengths.luminance(flight.throughput);
+        let first_throughput = flight.throughput.max_lane();
         while path.vertices.len() < max_edges {
             let Some(point) = self.scene.closest(&flight.ray) else {
                 if walk == Walk::FromCamera {
@@ -159,7 +159,7 @@ impl Kernel<'_> {
         if bounces < self.roulette_start {
             return true;
         }
-        let left = self.wavelengths.luminance(flight.throughput) / (flight.radiance_scale * first_throughput);
+        let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
         let survival = left.min(MAX_SURVIVAL);
         // A NaN fails the comparison and ends the walk.
         let survives = bounce.survival < survival;
