@@ -1,4 +1,4 @@
-"""Makes a scratch environment that holds the peers, and runs this script again inside it."""
+"""Makes a scratch environment that holds the peers, and runs the script again inside it."""
 
 import os
 import shutil
@@ -22,6 +22,7 @@ def enter(folder):
     if subprocess.run([python, "-c", "import importlib.util as u, sys; "
                        "sys.exit(not all(map(u.find_spec, ('mitsuba', 'pyluxcore', 'numpy'))))"]).returncode:
         subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES], check=True)
+    if not (folder / "llvm").exists():
         fetch_llvm(folder / "llvm")
     os.execv(python, [str(python), *sys.argv])
 

@@ -12,7 +12,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-SAMPLES_A_PASS = 8
+SAMPLES_A_PASS = 4
 
 
 def main(job):

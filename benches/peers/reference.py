@@ -5,7 +5,6 @@ import hashlib
 import numpy as np
 
 import metrics
-import peers
 
 # Which engine renders the reference of a scene: the one that is best at it. Who else agrees is what `check` is for.
 ENGINE = {"a": "caustica-path", "b": "caustica-bdpt", "c": "caustica-bdpt", "d": "caustica-bdpt"}
@@ -37,18 +36,11 @@ class Reference:
         self.image = images.mean(axis=0, dtype=np.float64).astype(np.float32)
         mean, error = metrics.mean_and_error([metrics.luminance(image).mean() for image in images])
         self.mean, self.mean_error = float(mean), float(error)
-        # Two halves differ by twice the error of the whole, whose variance is half of each half's.
+        # Half the difference of two halves has the variance of the mean of both.
         halves = images[::2].mean(axis=0, dtype=np.float64), images[1::2].mean(axis=0, dtype=np.float64)
-        self.rel_mse = self._own_error(halves, 0.0)
-        self.trimmed = self._own_error(halves, 0.001)
-
-    def _own_error(self, halves, trim):
-        errors = np.sort(((halves[0] - halves[1]) ** 2 / 4).reshape(-1, 3)
-                         / (self.image.reshape(-1, 3) ** 2 + 0.01 * self._mean_luminance() ** 2), axis=0).mean(axis=1)
-        return float(errors[:len(errors) - round(trim * len(errors))].mean())
-
-    def _mean_luminance(self):
-        return float(metrics.luminance(self.image).mean())
+        alike = self.image + (halves[0] - halves[1]) / 2
+        self.rel_mse = metrics.rel_mse(alike, self.image)
+        self.trimmed = metrics.rel_mse(alike, self.image, trim=0.001)
 
 
 def check(runner, names, scene_name, folder, reference, seconds, count, cache):

@@ -39,6 +39,7 @@ def parsed():
     p.add_argument("--threads", type=int, default=os.cpu_count())
     p.add_argument("--work", metavar="DIR", default=DEFAULT_WORK, help="scenes, references, previews and reports")
     p.add_argument("--seed", type=int, default=1, help="seed of the measured renders, below 1000")
+    p.add_argument("--repeats", type=int, default=1, help="renders of each kind, with seeds of their own, averaged")
     p.add_argument("--reference-time", type=float, default=600, help="seconds for each reference")
     p.add_argument("--batches", type=int, default=16, help="independent parts of references and checks")
     p.add_argument("--check", action="store_true", help="compare the means in long runs instead of measuring")
@@ -48,19 +49,28 @@ def parsed():
 
 
 def measure(runner, name, scene_name, folder, reference, seconds, options):
-    """One render and its errors, as a row of the table."""
+    """A row of the table: the means over the renders with different seeds."""
+    rows = [measure_once(runner, name, scene_name, folder, reference, seconds, options, options.seed + k)
+            for k in range(options.repeats)]
+    mean = {key: sum(row[key] for row in rows) / len(rows) for key in rows[0]}
+    variants = {"variant": runner.mitsuba_variant(folder)} if name == BASELINE else {}
+    return {"scene": scene_name, "engine": name, "time": seconds, **variants, **mean,
+            "rel_mse_of_each": [row["rel_mse"] for row in rows], "trimmed_of_each": [row["trimmed"] for row in rows]}
+
+
+def measure_once(runner, name, scene_name, folder, reference, seconds, options, seed):
+    """One render and its errors. Missing rows are left out, and a brightness known to be wrong is corrected."""
     import metrics
     import peers
     import scenes
-    render = runner.render(name, folder, seconds, options.seed)
+    render = runner.render(name, folder, seconds, seed)
     truth = reference.image[:len(render.image)]
     ratio = float(metrics.luminance(render.image).mean() / metrics.luminance(truth).mean())
     image = render.image / ratio if peers.ENGINES[name].rescaled else render.image
     peers.write_png(image, Path(options.work) / f"{scene_name}-{name}-{seconds:g}s.png")
-    return {"scene": scene_name, "engine": name, "variant": render.variant, "time": seconds, "seconds": render.seconds,
-            "cpu": render.cpu, "spp": render.samples,
+    return {"seconds": render.seconds, "cpu": render.cpu, "spp": render.samples,
             "samples_per_second": render.samples * scenes.WIDTH * scenes.HEIGHT / render.seconds,
-            "mean_deviation_percent": 100 * (ratio - 1), "rescaled": peers.ENGINES[name].rescaled,
+            "mean_deviation_percent": 100 * (ratio - 1),
             "rel_mse": metrics.rel_mse(image, truth), "trimmed": metrics.rel_mse(image, truth, trim=0.001)}
 
 
@@ -94,9 +104,9 @@ def goals(rows):
         yield f"  goal: {name} at most {limit} × {BASELINE} ({key}): {ours[key + '_ratio']:.4f}, {met}"
     for row in rows:
         if row["engine"].startswith("luxcore"):
-            share = ours[key] / row[key]
-            yield (f"  goal: {name} at most 0.5 × {row['engine']} ({key}): {share:.4f}, "
-                   f"{'met' if share <= 0.5 else 'NOT met'}")
+            share, trimmed = ours["rel_mse"] / row["rel_mse"], ours["trimmed"] / row["trimmed"]
+            yield (f"  goal: {name} at most 0.5 × {row['engine']}: {share:.4f}, trimmed {trimmed:.4f}, "
+                   f"{'met' if max(share, trimmed) <= 0.5 else 'NOT met'}")
 
 
 def main():
@@ -108,7 +118,7 @@ def main():
     import scenes
     work, cache = Path(options.work), Path(options.work) / "cache"
     runner = peers.Runner(peers.find_caustica(options.caustica), options.threads)
-    report = {"caustica": str(runner.caustica), "threads": options.threads, "machine": platform.processor(),
+    report = {"caustica": str(runner.caustica), "threads": options.threads, "machine": platform.platform(),
               "width": scenes.WIDTH, "height": scenes.HEIGHT, "max_depth": scenes.MAX_DEPTH, "scenes": {}}
     for scene_name in options.scenes:
         folder = scenes.export(scene_name, work / "scenes" / scene_name)
