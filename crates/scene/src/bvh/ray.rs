@@ -1,6 +1,8 @@
 //! Rays made ready for tests of eight boxes or triangles at a time.
 #![allow(unsafe_code)]
 
+use wide::f32x4;
+
 use super::Ray;
 use super::lanes::Lanes;
 
@@ -30,41 +32,61 @@ const FAR: f32 = 1.0 + 8.0 * f32::EPSILON;
 #[inline(always)]
 pub(super) fn is_parallel(ray: &Ray) -> bool {
     let [x, y, z] = ray.direction.to_array();
-    (x.abs() < f32::MIN_POSITIVE) | (y.abs() < f32::MIN_POSITIVE) | (z.abs() < f32::MIN_POSITIVE)
+    f32x4::new([x, y, z, 1.0]).abs().simd_lt(f32x4::splat(f32::MIN_POSITIVE)).to_bitmask() != 0
 }
 
 /// The x and y axes for each z axis, for directions along it and against it.
 const PERMUTATIONS: [[[usize; 2]; 2]; 3] = [[[1, 2], [2, 1]], [[2, 0], [0, 2]], [[0, 1], [1, 0]]];
 
+/// Where the rows of planes begin that are entered first and those that are left, for directions by the signs of
+/// their components.
+const ROWS: [[[usize; 3]; 2]; 8] = {
+    let mut rows = [[[0; 3]; 2]; 8];
+    let mut i = 0;
+    while i < 24 {
+        let (signs, axis) = (i / 3, i % 3);
+        let backward = signs >> axis & 1;
+        rows[signs][0][axis] = 8 * (axis + 3 * backward);
+        rows[signs][1][axis] = 8 * (axis + 3 - 3 * backward);
+        i += 1;
+    }
+    rows
+};
+
 impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     #[inline(always)]
     pub(super) fn new(ray: &Ray) -> Self {
         let (d, o) = (ray.direction.to_array(), ray.origin.to_array());
-        let (mut inverse, mut far_origin) = ([0.0; 3], o);
-        for axis in 0..3 {
-            let (d, o) = (d[axis], o[axis]);
-            inverse[axis] = 1.0 / d;
-            // A zero component would make 0·∞ of a plane through the origin.
-            if PARALLEL && d.abs() < f32::MIN_POSITIVE {
-                inverse[axis] = 1.0 / f32::MIN_POSITIVE.copysign(d);
-                // A ray in the plane in which a box ends does not leave the box at once.
-                far_origin[axis] = o - (o.abs() * f32::EPSILON).max(1e-20).copysign(d);
+        let (mut divisor, mut far_origin) = (d, o);
+        if PARALLEL {
+            for axis in 0..3 {
+                let (d, o) = (d[axis], o[axis]);
+                if d.abs() < f32::MIN_POSITIVE {
+                    // A zero component would make 0·∞ of a plane through the origin.
+                    divisor[axis] = f32::MIN_POSITIVE.copysign(d);
+                    // A ray in the plane in which a box ends does not leave the box at once.
+                    far_origin[axis] = o - (o.abs() * f32::EPSILON).max(1e-20).copysign(d);
+                }
             }
         }
-        let backward = [inverse[0] < 0.0, inverse[1] < 0.0, inverse[2] < 0.0].map(usize::from);
+        let inverse = f32x4::splat(1.0) / f32x4::new([divisor[0], divisor[1], divisor[2], 1.0]);
+        let signs = inverse.simd_lt(f32x4::ZERO).to_bitmask() as usize & 7;
+        let far_inverse = (inverse * f32x4::splat(FAR)).to_array();
+        let inverse = inverse.to_array();
+        let [near, far] = ROWS[signs];
         // Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
         let size = [d[0].abs(), d[1].abs(), d[2].abs()];
         let larger = usize::from(size[0] <= size[1]);
         let z = if size[larger] > size[2] { larger } else { 2 };
-        let [x, y] = PERMUTATIONS[z][usize::from(d[z] < 0.0)];
-        let along = 1.0 / d[z];
+        let [x, y] = PERMUTATIONS[z][signs >> z & 1];
+        let along = inverse[z];
         Self {
             origin: splat(o),
             far_origin: splat(far_origin),
-            inverse: splat(inverse),
-            far_inverse: splat([inverse[0] * FAR, inverse[1] * FAR, inverse[2] * FAR]),
-            near: [8 * (3 * backward[0]), 8 * (1 + 3 * backward[1]), 8 * (2 + 3 * backward[2])],
-            far: [8 * (3 - 3 * backward[0]), 8 * (4 - 3 * backward[1]), 8 * (5 - 3 * backward[2])],
+            inverse: splat([inverse[0], inverse[1], inverse[2]]),
+            far_inverse: splat([far_inverse[0], far_inverse[1], far_inverse[2]]),
+            near,
+            far,
             axes: [x, y, z],
             shear: splat([d[x] * along, d[y] * along, along]),
         }

@@ -8,7 +8,7 @@ use caustica_math::Vec3;
 use super::build::MAX_DEPTH;
 use super::lanes::{Lanes, Portable};
 use super::ray::{LaneRay, is_parallel};
-use super::triangle::{BLOCK, Best};
+use super::triangle::{BLOCK, Best, NOTHING, SPHERE};
 use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
@@ -82,7 +82,7 @@ pub(super) fn first_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
 #[inline(always)]
 fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let lanes = LaneRay::<L, P>::new(ray);
-    let mut best = Best { t: ray.t_max, primitive: Best::NOTHING, place: 0, edges: [0.0; 2], det: 1.0 };
+    let mut best = Best::<L>::new(ray.t_max);
     let (mut stack, mut waiting) = (Stack::new(), 0);
     let mut current = bvh.root;
     loop {
@@ -176,18 +176,19 @@ fn lane(mask: u32) -> usize {
 }
 
 #[inline(always)]
-fn finish(bvh: &Bvh, best: &Best) -> Option<Hit> {
-    if best.primitive == Best::NOTHING {
+fn finish<L: Lanes>(bvh: &Bvh, best: &Best<L>) -> Option<Hit> {
+    let (t, primitive) = (best.t, best.primitive);
+    if primitive == NOTHING {
         return None;
     }
-    let [b1, b2] = [best.edges[0] / best.det, best.edges[1] / best.det];
-    let corners = if best.place == Best::SPHERE {
-        [Vec3::ZERO; 3]
-    } else {
-        // SAFETY: the place is where a triangle was hit.
-        unsafe { bvh.blocks.get_unchecked(best.place / BLOCK) }.corners(best.place)
-    };
-    Some(Hit { t: best.t, primitive: best.primitive, b1, b2, corners })
+    if best.place == SPHERE {
+        return Some(Hit { t, primitive, b1: 0.0, b2: 0.0, corners: [Vec3::ZERO; 3] });
+    }
+    let lane = best.place % BLOCK;
+    let (v, w, det) = (best.edges[0].store()[lane], best.edges[1].store()[lane], best.det.store()[lane]);
+    // SAFETY: the place is where a triangle was hit.
+    let corners = unsafe { bvh.blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
+    Some(Hit { t, primitive, b1: v / det, b2: w / det, corners })
 }
 
 #[inline(always)]
@@ -196,7 +197,7 @@ fn test_leaf<L: Lanes, const P: bool>(
     leaf: Child,
     ray: &Ray,
     lanes: &LaneRay<L, P>,
-    best: &mut Best,
+    best: &mut Best<L>,
 ) {
     if !leaf.holds_spheres() {
         for index in leaf.range() {
@@ -205,19 +206,24 @@ fn test_leaf<L: Lanes, const P: bool>(
         }
         return;
     }
-    test_spheres(bvh, leaf, ray, best);
+    if let Some((t, primitive)) = test_spheres(bvh, leaf, ray, (best.t, best.primitive)) {
+        (best.t, best.primitive, best.place) = (t, primitive, SPHERE);
+    }
 }
 
+/// A hit of the leaf's that comes before the best so far.
 #[cold]
 #[inline(never)]
-fn test_spheres(bvh: &Bvh, leaf: Child, ray: &Ray, best: &mut Best) {
+fn test_spheres(bvh: &Bvh, leaf: Child, ray: &Ray, mut best: (f32, u32)) -> Option<(f32, u32)> {
+    let before = best;
     for (sphere, primitive) in &bvh.spheres[leaf.range()] {
-        if let Some(t) = sphere.intersect(&Ray { t_max: best.t, ..*ray })
-            && (t < best.t || *primitive < best.primitive)
+        if let Some(t) = sphere.intersect(&Ray { t_max: best.0, ..*ray })
+            && (t < best.0 || *primitive < best.1)
         {
-            *best = Best { t, primitive: *primitive, place: Best::SPHERE, edges: [0.0; 2], det: 1.0 };
+            best = (t, *primitive);
         }
     }
+    (best != before).then_some(best)
 }
 
 /// Whether the ray hits anything.

@@ -18,24 +18,30 @@ pub(super) struct TriangleBlock {
 
 /// The best hit so far.
 #[derive(Clone, Copy)]
-pub(super) struct Best {
+pub(super) struct Best<L> {
     /// Where it is, or where the ray ends.
     pub t: f32,
-    /// What was hit; [`Best::NOTHING`] if nothing was.
+    /// What was hit; [`NOTHING`] if nothing was.
     pub primitive: u32,
     /// Where it lies among the blocks: the block's index times eight, plus the lane.
     pub place: usize,
-    /// The barycentric coordinates of the second and third corner, times `det`.
-    pub edges: [f32; 2],
-    pub det: f32,
+    /// For all lanes there the barycentric coordinates of the second and third corner, times `det`.
+    pub edges: [L; 2],
+    pub det: L,
 }
 
-impl Best {
-    /// No primitive.
-    pub(super) const NOTHING: u32 = u32::MAX;
-    /// The place of spheres.
-    pub(super) const SPHERE: usize = usize::MAX;
+impl<L: Lanes> Best<L> {
+    /// Nothing so far.
+    #[inline(always)]
+    pub(super) fn new(t_max: f32) -> Self {
+        let zero = L::splat(0.0);
+        Self { t: t_max, primitive: NOTHING, place: 0, edges: [zero; 2], det: zero }
+    }
 }
+/// No primitive.
+pub(super) const NOTHING: u32 = u32::MAX;
+/// The place of spheres.
+pub(super) const SPHERE: usize = usize::MAX;
 
 /// What a block's test found.
 struct Crossings<L> {
@@ -50,7 +56,7 @@ struct Crossings<L> {
 impl TriangleBlock {
     /// A block of the given triangles, one to eight.
     pub(super) fn new(triangles: impl Iterator<Item = (u32, [Vec3; 3])>) -> Self {
-        let mut block = Self { corners: [[[0.0; BLOCK]; 3]; 3], ids: [Best::NOTHING; BLOCK] };
+        let mut block = Self { corners: [[[0.0; BLOCK]; 3]; 3], ids: [NOTHING; BLOCK] };
         let mut used = 0;
         for (id, corners) in triangles.take(BLOCK) {
             // The first fills the lanes that may stay unused.
@@ -129,7 +135,7 @@ impl TriangleBlock {
         &self,
         index: usize,
         ray: &LaneRay<L, P>,
-        best: &mut Best,
+        best: &mut Best<L>,
     ) {
         let Some(Crossings { mut mask, t, edges, det }) = self.test(ray, best.t) else { return };
         let ts = t.store();
@@ -146,8 +152,7 @@ impl TriangleBlock {
         }
         if let Some(lane) = winner {
             best.place = index * BLOCK + lane;
-            best.edges = [edges[0].store()[lane], edges[1].store()[lane]];
-            best.det = det.store()[lane];
+            (best.edges, best.det) = (edges, det);
         }
     }
 
