@@ -5,9 +5,9 @@
     python3 benches/frames.py --compare ../old/target/release/caustica --scenes built-in
     python3 benches/frames.py --repeats 0                        # instructions alone: no quiet machine needed
 
-Instructions are those of a render of three samples a pixel, less those of one, so that loading and writing cancel;
-callgrind counts them, one thread runs. Times are medians of renders, the two programs taking turns; a ratio is the
-median of the turns' ratios, this program's time over the other's, and comes with its quartiles.
+Instructions are those of a render of three samples a pixel, less those of one, so that loading cancels; callgrind
+counts them, but for the writing of the picture; one thread runs. Times are medians of renders, the two programs taking
+turns; a ratio is the median of the turns' ratios, this program's time over the other's, and comes with its quartiles.
 """
 
 import argparse
@@ -22,7 +22,7 @@ def instructions(binary, scene, integrator, work):
     counts = []
     for samples in (1, 3):
         file = measure.callgrind(binary, scene, integrator, samples, work)
-        counts.append(measure.totals(file)["Ir"])
+        counts.append(measure.instructions(file))
         file.unlink()
     return (counts[1] - counts[0]) / (2 * measure.SIZE[0] * measure.SIZE[1])
 
@@ -39,7 +39,8 @@ def timed(repeats):
     """Those times, in words."""
     if not repeats:
         return ""
-    text = f"{median(r[0] for r in repeats):8.2f} µs"
+    own = [r[0] for r in repeats]
+    text = f"{median(own):8.2f} µs (best {min(own):.2f})"
     if len(repeats[0]) > 1:
         ratios = [r[0] / r[1] for r in repeats]
         text += f", ratio {median(ratios):.3f}"

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,9 @@ SIZE = (120, 90)
 BUILT_IN = "built-in"
 # The level-2 cache that is simulated as the last one: size in bytes, ways, bytes a line.
 LEVEL_2 = "524288,8,64"
+# Files and functions that write the picture.
+OUTPUT = re.compile(r"\b(miniz_oxide|png|fdeflate|exr|zune_\w+)(-[\d.]+/|::)"
+                    r"|film(/src/|::)(display|tonemap|openexr|output|picture)|powf")
 
 
 def arguments(parser):
@@ -88,13 +92,21 @@ def callgrind(binary, scene, integrator, samples, work, options=()):
     return out
 
 
-def totals(file):
-    """All events of a callgrind file, by name."""
-    events, counts = [], []
+def instructions(file):
+    """All instructions of a callgrind file, but those that write the picture: how many depends on what is in it."""
+    total, skip, counted = 0, False, True
+    place = {"fl=": "", "fn=": "", "fi=": ""}  # file, function, file that a line was inlined from
     with open(file) as lines:
         for line in lines:
-            if line.startswith("events:"):
-                events = line.split()[1:]
-            elif line.startswith(("totals:", "summary:")):
-                counts = [int(c) for c in line.split()[1:]]
-    return dict(zip(events, counts))
+            if line.startswith(("fl=", "fn=", "fi=", "fe=")):
+                if line[:3] in ("fl=", "fn="):
+                    place["fi="] = ""
+                place["fi=" if line[:3] == "fe=" else line[:3]] = line
+                counted = not any(OUTPUT.search(p) for p in place.values())
+            elif line.startswith("calls="):
+                skip = True
+            elif line[:1].isdigit():
+                if counted and not skip:
+                    total += int(line.split()[1])
+                skip = False
+    return total

@@ -4,7 +4,7 @@
     python3 benches/stages.py --scenes b
     python3 benches/stages.py --scenes a,b,d --integrator path
 
-Renders three samples a pixel and one under callgrind and takes the difference, so that loading and writing cancel.
+Renders three samples a pixel and one under callgrind and takes the difference, so that loading cancels.
 Nearly all of a sample is inlined into a few functions. So instructions are counted by address, the program's line
 tables tell which functions each was inlined from, and the innermost that belongs to a stage has it. Caches and
 branches are simulated: a first level as the machine has, a second of 512 KiB, no prefetching.
@@ -45,8 +45,6 @@ COLUMNS = {"instructions": ["Ir"], "level-1 misses": ["D1mr", "D1mw"], "level-2 
 RAYS = {CLOSEST: re.compile(r"(avx2|traverse)::closest"), SHADOW: re.compile(r"(avx2|traverse)::occluded")}
 # Functions of lanes and their callers in `scene/src/bvh`.
 VISITS = {("le", "enter"): "nodes", ("ge", "test"): "blocks", ("le", "enter_triangles"): "boxes"}
-# Writing the picture.
-OUTPUT = re.compile(r"/(png|miniz_oxide|fdeflate|exr|zune)[^/]*/src/|film/src/(display|tonemap|openexr|output|picture)")
 
 
 def read(file, binary):
@@ -119,7 +117,7 @@ def stage_of(chain):
 
 def is_output(chain):
     """Whether an instruction writes the picture, whose length depends on what is in it."""
-    return any(OUTPUT.search(file) for _, file in chain)
+    return any(measure.OUTPUT.search(place) for frame in chain for place in frame)
 
 
 def compares(binary, addresses):
