@@ -73,6 +73,8 @@ struct Recorder(Replay);
 
 impl Sink for Recorder {
     const PROBES: bool = true;
+    // The sample as the film gets it.
+    const KEEPS_ALL: bool = false;
 
     fn eye(&mut self, value: Rgb) {
         self.0.eye = value.0;

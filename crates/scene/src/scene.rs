@@ -211,7 +211,7 @@ impl Scene {
     /// Whether nothing stands between two points, both already moved off their surfaces.
     #[inline]
     pub fn visible(&self, from: Vec3, to: Vec3) -> bool {
-        !self.bvh.occluded(&Ray { origin: from, direction: to - from, t_max: 1.0 })
+        !self.bvh.occluded(&Ray::between(from, to))
     }
 
     /// The BSDF at a point.

@@ -7,6 +7,7 @@ use caustica_scene::bvh::Ray;
 use caustica_scene::camera::CameraRay;
 use caustica_scene::description::Integrator;
 
+use crate::bdpt::Candidates;
 use crate::numbers::{EyeNumbers, Needs};
 use crate::sink::Sink;
 use crate::strategy::{Classes, StrategySet};
@@ -87,6 +88,7 @@ pub struct Scratch {
     pub(crate) eye: Subpath,
     pub(crate) light: Subpath,
     pub(crate) densities: Vec<VertexDensities>,
+    pub(crate) candidates: Candidates,
 }
 
 /// One eye path's beginning.

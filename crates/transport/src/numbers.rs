@@ -21,6 +21,9 @@ const CHOICE: u64 = 2;
 /// Of what the surface after a start or bounce is joined with: a point on a lamp, or on the lens.
 const JOINED: u64 = 3;
 
+/// A group beyond those of all bounces.
+const CANDIDATES: usize = 1 << 16;
+
 /// The numbers of one bounce.
 pub(crate) struct Bounce {
     /// Of the direction and the lobe.
@@ -100,6 +103,13 @@ impl EyeNumbers {
     #[inline]
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
         (self.draw_if(self.needs.choice, vertex, CHOICE), self.draw(vertex, JOINED))
+    }
+}
+
+impl EyeNumbers {
+    /// Of roulette among what the path can be joined with.
+    pub fn candidates(&mut self) -> f32 {
+        self.draw(CANDIDATES, LOBE)[0]
     }
 }
 

@@ -12,6 +12,10 @@ pub trait Sink {
     /// Whether [`Sink::contribution`] is wanted. It is called only if so.
     const PROBES: bool = false;
 
+    /// Whether contributions that are small beside the sample's sum may not be left to roulette: those who look at
+    /// single contributions need them all as they are.
+    const KEEPS_ALL: bool = Self::PROBES;
+
     /// The sample's value for its own pixel, of the eye image.
     fn eye(&mut self, value: Rgb);
 

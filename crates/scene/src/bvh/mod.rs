@@ -30,6 +30,14 @@ pub struct Ray {
     pub t_max: f32,
 }
 
+impl Ray {
+    /// The ray that ends at a point.
+    #[inline]
+    pub fn between(from: Vec3, to: Vec3) -> Self {
+        Self { origin: from, direction: to - from, t_max: 1.0 }
+    }
+}
+
 /// What a ray hit first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {

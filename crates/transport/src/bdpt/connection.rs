@@ -1,8 +1,9 @@
 //! s ≥ 2, t ≥ 2: inner connections.
 
-use caustica_math::Spectrum;
 use caustica_scene::bsdf::Walk;
+use caustica_scene::bvh::Ray;
 
+use super::candidate::Candidates;
 use super::{Junction, Sample};
 use crate::edge::Edge;
 use crate::kernel::Kernel;
@@ -13,8 +14,7 @@ use crate::weight::weight;
 
 impl Kernel<'_> {
     /// s ≥ 2, t ≥ 2: every light vertex with every eye vertex.
-    pub(super) fn connections<S: Sink>(&self, sample: &Sample<'_>, sink: &mut S) -> Spectrum {
-        let mut sum = Spectrum::ZERO;
+    pub(super) fn connections<S: Sink>(&self, sample: &Sample<'_>, candidates: &mut Candidates) {
         let (eye, light) = (sample.eye, sample.light);
         for (i, z) in eye.vertices.iter().enumerate() {
             if !z.is_connectible() {
@@ -26,11 +26,10 @@ impl Kernel<'_> {
                     break;
                 }
                 if y.is_connectible() {
-                    sum += self.connection(sample, (j + 2, i + 2), (y, z), sink).unwrap_or(Spectrum::ZERO);
+                    self.connection::<S>(sample, (j + 2, i + 2), (y, z), candidates);
                 }
             }
         }
-        sum
     }
 
     #[inline]
@@ -39,8 +38,8 @@ impl Kernel<'_> {
         sample: &Sample<'_>,
         (s, t): (usize, usize),
         (y, z): (&Vertex, &Vertex),
-        sink: &mut S,
-    ) -> Option<Spectrum> {
+        candidates: &mut Candidates,
+    ) -> Option<()> {
         let strategy = Strategy { s: s as u32, t: t as u32 };
         if self.exhaustive && !self.settings.strategies.contains(strategy) {
             return None;
@@ -55,9 +54,7 @@ impl Kernel<'_> {
         let at_light: Scatter = y.scatter(Walk::FromLight, direction)?;
         let edge = Edge::finite(length_squared);
         let value = y.throughput * at_light.value * at_eye.value * z.throughput * edge.falloff;
-        if value.is_black()
-            || !self.scene.visible(y.point.off_surface(direction), z.point.off_surface(-direction))
-        {
+        if value.is_black() {
             return None;
         }
         let junction = Junction {
@@ -66,17 +63,15 @@ impl Kernel<'_> {
         };
         let emission = sample.emission.as_ref()?;
         let joined = sample.joined(strategy, (emission.point, emission.pdf.point.0), junction, value);
-        Some(self.finish(
-            sample,
-            &joined,
-            || {
-                let h = self.heuristic;
-                weight(
-                    y.sums.total(junction.light.0, junction.light.1, h),
-                    z.sums.total(junction.eye.0, junction.eye.1, h),
-                )
-            },
-            sink,
-        ))
+        let running = || {
+            let h = self.heuristic;
+            weight(
+                y.sums.total(junction.light.0, junction.light.1, h),
+                z.sums.total(junction.eye.0, junction.eye.1, h),
+            )
+        };
+        let ray = Ray::between(y.point.off_surface(direction), z.point.off_surface(-direction));
+        self.offer::<S>(sample, (joined, ray), running, candidates);
+        Some(())
     }
 }

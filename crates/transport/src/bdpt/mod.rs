@@ -1,5 +1,6 @@
 //! Bidirectional path tracing: all strategies of one sample.
 
+mod candidate;
 mod connection;
 mod exhaustive;
 mod hit;
@@ -12,6 +13,8 @@ use caustica_math::{SampleId, Spectrum, Vec2};
 use caustica_scene::bvh::Ray;
 use caustica_scene::camera::{CameraLink, CameraPoint};
 use caustica_scene::light::{Anchor, Emission, LightPoint};
+
+pub(crate) use candidate::Candidates;
 
 use crate::kernel::{EyeSample, Kernel, Scratch};
 use crate::numbers::LightNumbers;
@@ -41,7 +44,8 @@ struct Junction {
 }
 
 /// A path made by one strategy, before its weight is known.
-struct Joined {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joined {
     strategy: Strategy,
     lamp: LightPoint,
     junction: Junction,
@@ -93,19 +97,21 @@ impl Kernel<'_> {
         } else {
             None
         };
-        let Scratch { eye, light, densities } = scratch;
+        let Scratch { eye, light, densities, candidates } = scratch;
         let densities = RefCell::new(densities);
         let sample = Sample { eye, light, emission, camera: ray.point, film, densities };
         let mut sum = Spectrum::ZERO;
         if classes.hit {
             sum += self.hits(&sample, sink);
         }
+        candidates.clear();
         if classes.next_event {
-            sum += self.next_events(&sample, &mut numbers, sink);
+            self.next_events::<S>(&sample, &mut numbers, candidates);
         }
         if classes.inner {
-            sum += self.connections(&sample, sink);
+            self.connections::<S>(&sample, candidates);
         }
+        sum += self.settle(&sample, sum, (candidates, &mut numbers), sink);
         if classes.splat {
             self.splats(&sample, &mut light_numbers, sink);
         }
@@ -130,31 +136,39 @@ impl Kernel<'_> {
         running: impl Fn() -> f32,
         sink: &mut S,
     ) -> Spectrum {
-        let weight = if self.exhaustive {
-            if !self.settings.strategies.contains(joined.strategy) {
-                return Spectrum::ZERO;
-            }
-            self.exhaustive_weight(sample, joined)
-        } else {
-            running()
-        };
+        let Some(weight) = self.weigh(sample, joined, running) else { return Spectrum::ZERO };
         if S::PROBES {
-            let (s, t) = (joined.strategy.s as usize, joined.strategy.t as usize);
-            let eye = &sample.eye.vertices;
-            sink.contribution(&Contribution {
-                strategy: joined.strategy,
-                unweighted: joined.value,
-                weight,
-                film: joined.film,
-                path: PathView {
-                    lamp: joined.lamp,
-                    light: &sample.light.vertices[..s.saturating_sub(1)],
-                    eye: &eye[..(t - 1).min(eye.len())],
-                    camera: joined.camera,
-                },
-            });
+            self.report(sample, joined, weight, sink);
         }
         joined.value * weight
+    }
+
+    /// A contribution's weight; `None` if its strategy is not in the set. (Running sums are used with sets of whole
+    /// classes, whose other members are not asked.)
+    #[inline]
+    fn weigh(&self, sample: &Sample<'_>, joined: &Joined, running: impl Fn() -> f32) -> Option<f32> {
+        if !self.exhaustive {
+            return Some(running());
+        }
+        self.settings.strategies.contains(joined.strategy).then(|| self.exhaustive_weight(sample, joined))
+    }
+
+    /// Tells a sink that probes.
+    fn report<S: Sink>(&self, sample: &Sample<'_>, joined: &Joined, weight: f32, sink: &mut S) {
+        let (s, t) = (joined.strategy.s as usize, joined.strategy.t as usize);
+        let eye = &sample.eye.vertices;
+        sink.contribution(&Contribution {
+            strategy: joined.strategy,
+            unweighted: joined.value,
+            weight,
+            film: joined.film,
+            path: PathView {
+                lamp: joined.lamp,
+                light: &sample.light.vertices[..s.saturating_sub(1)],
+                eye: &eye[..(t - 1).min(eye.len())],
+                camera: joined.camera,
+            },
+        });
     }
 }
 

@@ -1,10 +1,10 @@
 //! s = 1: next-event estimation.
 
-use caustica_math::Spectrum;
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::light::Towards;
 
+use super::candidate::Candidates;
 use super::{Junction, Sample};
 use crate::edge::Edge;
 use crate::kernel::Kernel;
@@ -20,10 +20,9 @@ impl Kernel<'_> {
         &self,
         sample: &Sample<'_>,
         numbers: &mut EyeNumbers,
-        sink: &mut S,
-    ) -> Spectrum {
+        candidates: &mut Candidates,
+    ) {
         let lights = self.scene.lights(self.wavelengths);
-        let mut sum = Spectrum::ZERO;
         // One more edge joins the lamp.
         let count = sample.eye.vertices.len().min(self.max_edges - 1);
         for i in 0..count {
@@ -32,10 +31,10 @@ impl Kernel<'_> {
                 continue;
             }
             let (choice, u) = numbers.next_event(i);
-            let Some(found) = lights.sample_towards(vertex.point.position, choice, u) else { continue };
-            sum += self.next_event(sample, i + 2, &found, sink).unwrap_or(Spectrum::ZERO);
+            if let Some(found) = lights.sample_towards(vertex.point.position, choice, u) {
+                self.next_event::<S>(sample, i + 2, &found, candidates);
+            }
         }
-        sum
     }
 
     fn next_event<S: Sink>(
@@ -43,14 +42,14 @@ impl Kernel<'_> {
         sample: &Sample<'_>,
         t: usize,
         found: &Towards,
-        sink: &mut S,
-    ) -> Option<Spectrum> {
+        candidates: &mut Candidates,
+    ) -> Option<()> {
         let vertex = &sample.eye.vertices[t - 2];
         let scatter = vertex.scatter(Walk::FromCamera, found.direction)?;
         let edge = Edge::of_length(found.distance);
         let to_lamp = edge.jacobian(found.point.cos(found.direction));
         let value = vertex.throughput * scatter.value * found.radiance * (to_lamp / found.pdf.0);
-        if value.is_black() || !self.is_lit(vertex, found) {
+        if value.is_black() {
             return None;
         }
         let lights = self.scene.lights(self.wavelengths);
@@ -61,29 +60,32 @@ impl Kernel<'_> {
         let strategy = Strategy { s: 1, t: t as u32 };
         let junction = Junction { light: (from_camera, 0.0), eye: (from_light, scatter.reverse.0) };
         let joined = sample.joined(strategy, (found.point, pdf.point.0), junction, value);
-        Some(self.finish(
-            sample,
-            &joined,
-            || {
-                let h = self.heuristic;
-                let light_side = if self.classes.hit { h.of(from_camera / found.pdf.0) } else { 0.0 };
-                let sums = sample.eye.vertices[t - 2].sums;
-                // Longer light paths begin by emission.
-                let eye_side = h.of(pdf.point.0 / found.pdf.0) * sums.total(from_light, scatter.reverse.0, h);
-                weight(light_side, eye_side)
-            },
-            sink,
-        ))
+        let running = || {
+            let h = self.heuristic;
+            let light_side = if self.classes.hit { h.of(from_camera / found.pdf.0) } else { 0.0 };
+            // Longer light paths begin by emission.
+            let eye_side =
+                h.of(pdf.point.0 / found.pdf.0) * vertex.sums.total(from_light, scatter.reverse.0, h);
+            weight(light_side, eye_side)
+        };
+        self.offer::<S>(sample, (joined, ray_to(vertex, found)), running, candidates);
+        Some(())
     }
 
     /// Whether nothing stands between an eye vertex and a point found on a lamp.
     #[inline]
     pub(crate) fn is_lit(&self, vertex: &Vertex, found: &Towards) -> bool {
-        let origin = vertex.point.off_surface(found.direction);
-        if found.distance.is_finite() {
-            self.scene.visible(origin, found.point.off_surface(-found.direction))
-        } else {
-            !self.scene.occluded(&Ray { origin, direction: found.direction, t_max: f32::INFINITY })
-        }
+        !self.scene.occluded(&ray_to(vertex, found))
+    }
+}
+
+/// The ray from an eye vertex to a point found on a lamp.
+#[inline]
+fn ray_to(vertex: &Vertex, found: &Towards) -> Ray {
+    let origin = vertex.point.off_surface(found.direction);
+    if found.distance.is_finite() {
+        Ray::between(origin, found.point.off_surface(-found.direction))
+    } else {
+        Ray { origin, direction: found.direction, t_max: f32::INFINITY }
     }
 }
