@@ -152,7 +152,8 @@ pub enum TreeQuality {
     #[default]
     Fast,
     /// Large triangles may be in several, each with a smaller box: at most three in ten more references. It takes
-    /// longer to build, and pays where long triangles lie across the axes.
+    /// longer to build, and pays where long triangles lie across the axes; in a room of small even ones rays take up
+    /// to a quarter longer.
     Spatial,
 }
 
