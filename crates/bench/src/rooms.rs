@@ -31,6 +31,45 @@ impl Room {
         room
     }
 
+    /// The same with a tangle of long flat sticks in all directions: one in 20 of the triangles.
+    pub fn with_sticks(triangles: usize) -> Self {
+        let mut room = Self::new(triangles);
+        room.add_sticks(triangles / 40);
+        room
+    }
+
+    /// A cube full of sticks and nothing else.
+    pub fn of_sticks(triangles: usize) -> Self {
+        let mut room = Self::default();
+        room.add_walls();
+        room.add_sticks(triangles / 2);
+        room
+    }
+
+    /// Adds sticks, two triangles each.
+    fn add_sticks(&mut self, count: usize) {
+        // Equally spread in five dimensions: Roberts, "The Unreasonable Effectiveness of Quasirandom
+        // Sequences", 2018.
+        const STEPS: [f64; 5] = [0.834_957, 0.697_154, 0.582_093, 0.486_023, 0.405_808];
+        for i in 0..count as u32 {
+            let [x, y, z, u, v] = STEPS.map(|s| (f64::from(i) * s).fract() as f32);
+            let center = (Vec3::new(x, y, z) * 2.0 - Vec3::splat(1.0)) * (0.7 * HALF);
+            let (sin, cos) = elementary::sin_cos(u * std::f32::consts::TAU);
+            let up = v * 2.0 - 1.0;
+            let flat = (1.0 - up * up).sqrt();
+            let along = Vec3::new(flat * cos, flat * sin, up) * (0.25 * HALF);
+            let across = Vec3::new(-sin, cos, 0.0) * (0.002 * HALF);
+            let first = self.positions.len() as u32;
+            self.positions.extend([
+                center - along - across,
+                center + along - across,
+                center + along + across,
+                center - along + across,
+            ]);
+            self.triangles.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+        }
+    }
+
     fn add_walls(&mut self) {
         for axis in 0..3 {
             for side in [-1.0, 1.0] {

@@ -4,6 +4,7 @@ use std::time::Duration;
 use caustica::description::Crop;
 use caustica::film::ToneMap;
 use caustica::math::Sampler;
+use caustica::scene::bvh::TreeQuality;
 use caustica::session::INTEGRATOR_NAMES;
 use caustica::transport::{Heuristic, StrategySet};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -74,6 +75,9 @@ pub struct Render {
     /// Worker threads; the picture does not depend on it [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
+    /// How the tree that rays run through is built; the picture does not depend on it
+    #[arg(long, value_enum, default_value_t = TreeChoice::Fast)]
+    pub tree: TreeChoice,
     /// What becomes of the light image, which holds what light paths splat: most caustics
     #[arg(long, value_name = "CHOICE", value_enum, default_value_t = LightImageChoice::On)]
     pub light_image: LightImageChoice,
@@ -178,6 +182,24 @@ pub enum LightImageChoice {
     Only,
     /// Asked at the end
     Ask,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TreeChoice {
+    /// At once
+    Fast,
+    /// With large triangles cut up: several times slower to build, faster to render where long triangles lie
+    /// across the axes
+    Spatial,
+}
+
+impl From<TreeChoice> for TreeQuality {
+    fn from(choice: TreeChoice) -> Self {
+        match choice {
+            TreeChoice::Fast => Self::Fast,
+            TreeChoice::Spatial => Self::Spatial,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

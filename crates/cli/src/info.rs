@@ -1,6 +1,7 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
+use caustica::scene::bvh::TreeQuality;
 use caustica::session::info::{SceneInfo, describe, outline};
 
 use crate::args::Info;
@@ -11,7 +12,7 @@ use crate::loading;
 pub fn run(args: &Info, console: &mut Console) -> Result<ExitCode, Failure> {
     let description = loading::description(args.scene.as_deref(), console)?;
     let outline = outline(&description);
-    let scene = loading::scene(description, console)?;
+    let scene = loading::scene(description, TreeQuality::default(), console)?;
     let info = describe(&scene, outline);
     console.result(&info, || text(&info))?;
     Ok(ExitCode::SUCCESS)

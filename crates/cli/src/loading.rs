@@ -1,6 +1,7 @@
 use std::path::Path;
 
 use caustica::scene::Diagnostic;
+use caustica::scene::bvh::TreeQuality;
 use caustica::{Description, Scene, default_scene, import};
 
 use crate::console::Console;
@@ -19,8 +20,8 @@ pub fn description(path: Option<&Path>, console: &mut Console) -> Result<Descrip
 }
 
 /// The description made ready.
-pub fn scene(description: Description, console: &mut Console) -> Result<Scene, Failure> {
-    let (scene, warnings) = Scene::new(description)?;
+pub fn scene(description: Description, tree: TreeQuality, console: &mut Console) -> Result<Scene, Failure> {
+    let (scene, warnings) = Scene::with_tree(description, tree)?;
     console.warn(warnings);
     Ok(scene)
 }

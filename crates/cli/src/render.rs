@@ -33,7 +33,7 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let mut description = loading::description(args.scene.as_deref(), console)?;
     override_film(&mut description, args, console)?;
     let (asked, samples) = (description.integrator, description.samples);
-    let scene = loading::scene(description, console)?;
+    let scene = loading::scene(description, args.tree.into(), console)?;
     let settings = settings(&args.method, &scene, asked);
     if let Some(sample) = args.replay {
         return replay::run(&scene, settings, sample, console);

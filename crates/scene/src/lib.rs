@@ -11,6 +11,7 @@ pub mod description;
 pub mod diagnostic;
 pub mod light;
 mod material;
+mod references;
 pub mod scene;
 pub mod surface;
 pub mod texture;

@@ -3,7 +3,7 @@
 use caustica_math::{Frame, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 
 use crate::bsdf::Bsdf;
-use crate::bvh::{Bvh, Hit, Ray};
+use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, shears};
 use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
 use crate::diagnostic::Diagnostic;
@@ -11,8 +11,8 @@ use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
     SpotLight, Surroundings, power_through_disk,
 };
-
 use crate::material::bsdf_at;
+use crate::references;
 use crate::surface::{SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 
@@ -39,17 +39,28 @@ impl Scene {
     /// # Errors
     /// Geometry, camera, materials or lights that cannot be rendered: see [`Surfaces::new`] and
     /// [`Camera::new`].
-    pub fn new(mut description: Description) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
+    pub fn new(description: Description) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
+        Self::with_tree(description, TreeQuality::default())
+    }
+
+    /// The same, with a choice of how the tree is built.
+    ///
+    /// # Errors
+    /// As [`Scene::new`].
+    pub fn with_tree(
+        mut description: Description,
+        tree: TreeQuality,
+    ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
         let film = description.film.clone();
         let camera = Camera::new(&description.camera, &film)?;
-        check_references(&description)?;
+        references::check(&description)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = &description.materials[shape.material.0 as usize].kind;
             flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
         }
-        let bvh = Bvh::new(surfaces.positions(), surfaces.triangles(), &surfaces.spheres());
+        let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();
         let (center, radius) = if bounds.is_empty() {
             (camera.position(), 1.0)
@@ -305,7 +316,7 @@ impl Scene {
 }
 
 /// The texture that a material looks up, if it has one.
-fn texture_of(material: &MaterialKind) -> Option<&Texture> {
+pub(crate) fn texture_of(material: &MaterialKind) -> Option<&Texture> {
     match material {
         MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => Some(t),
         MaterialKind::Mirror { .. }
@@ -319,79 +330,4 @@ fn texture_of(material: &MaterialKind) -> Option<&Texture> {
 /// Whether a texture depends on the texture coordinates.
 fn varies(texture: &Texture) -> bool {
     !matches!(texture, Texture::Constant(_))
-}
-
-/// Whether the colours of a texture are finite and none is negative. (Images are looked at apart.)
-fn is_valid(texture: &Texture) -> bool {
-    match texture {
-        Texture::Constant(c) => c.is_valid(),
-        Texture::Checkerboard { value1, value2, .. } => value1.is_valid() && value2.is_valid(),
-        Texture::Image { .. } => true,
-    }
-}
-
-/// Every id must name something, and every colour be one.
-fn check_references(d: &Description) -> Result<(), Diagnostic> {
-    let image_exists = |t: &Texture| match t {
-        Texture::Image { image, .. } => (image.0 as usize) < d.images.len(),
-        _ => true,
-    };
-    for image in &d.images {
-        if image.width == 0
-            || image.height == 0
-            || image.pixels.len() != image.width as usize * image.height as usize
-        {
-            return Err(Diagnostic::error("an image's pixels do not match its size"));
-        }
-        if !image.pixels.iter().all(|p| p.is_valid()) {
-            return Err(Diagnostic::error("an image has values that are negative or not finite"));
-        }
-    }
-    for m in &d.materials {
-        if texture_of(&m.kind).is_some_and(|t| !image_exists(t)) {
-            return Err(Diagnostic::error("a material's texture names an image that does not exist")
-                .at(m.origin.clone()));
-        }
-        if !texture_of(&m.kind).is_none_or(is_valid) {
-            return Err(
-                Diagnostic::error("a material's colour is negative or not finite").at(m.origin.clone())
-            );
-        }
-    }
-    for s in &d.shapes {
-        if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t))
-        {
-            return Err(Diagnostic::error(format!(
-                "{} names a material or an image that does not exist",
-                s.name
-            ))
-            .at(s.origin.clone()));
-        }
-        if !s.emission.as_ref().is_none_or(is_valid) {
-            return Err(Diagnostic::error(format!(
-                "{} emits a colour that is negative or not finite",
-                s.name
-            ))
-            .at(s.origin.clone()));
-        }
-    }
-    for l in &d.lights {
-        if let LightKind::Environment { image, .. } = l.kind
-            && image.0 as usize >= d.images.len()
-        {
-            return Err(
-                Diagnostic::error("an environment names an image that does not exist").at(l.origin.clone())
-            );
-        }
-    }
-    let w = d.film.window();
-    let inside =
-        |start: u32, size: u32, full: u32| size > 0 && start.checked_add(size).is_some_and(|e| e <= full);
-    if !inside(w.x, w.width, d.film.width) || !inside(w.y, w.height, d.film.height) {
-        return Err(Diagnostic::error(format!(
-            "the crop window {}×{} at ({}, {}) does not lie within the picture of {}×{} pixels",
-            w.width, w.height, w.x, w.y, d.film.width, d.film.height
-        )));
-    }
-    Ok(())
 }

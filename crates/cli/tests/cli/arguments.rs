@@ -18,6 +18,7 @@ fn wrong_arguments_exit_with_2_and_write_nothing() {
         (&["--crop", "0,0,0,1"], "X,Y,WIDTH,HEIGHT"),
         (&["--seed", "x"], "invalid"),
         (&["--threads", "0"], "0 is not in 1.."),
+        (&["--tree", "tall"], "fast, spatial"),
         (&["--light-image", "maybe"], "on, off, only, ask"),
         (&["--strategies", "s=="], "no set of strategies"),
         (&["--strategies", "0"], "no set of strategies"),

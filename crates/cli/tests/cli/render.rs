@@ -168,7 +168,7 @@ fn a_resolution_of_ones_own_drops_the_scenes_crop() {
 }
 
 #[test]
-fn pictures_depend_on_the_seed_and_not_on_threads() {
+fn pictures_depend_on_the_seed_and_not_on_threads_or_the_tree() {
     let bench = Bench::new();
     let (one, _) = bench.render("1", &["--threads", "1", "--spp", "3"]);
     for threads in ["2", "7"] {
@@ -176,6 +176,8 @@ fn pictures_depend_on_the_seed_and_not_on_threads() {
         assert_eq!(one, other, "{threads} threads");
         assert_eq!(bench.bytes("1.png"), bench.bytes(&format!("{threads}.png")));
     }
+    let (other, _) = bench.render("spatial", &["--tree", "spatial", "--spp", "3"]);
+    assert_eq!(one, other, "spatial splits");
     let (other, facts) = bench.render("seed", &["--seed", "1", "--spp", "3"]);
     assert!(one.eye != other.eye && one.light != other.light);
     assert_eq!(facts.get("seed"), Some("1"));

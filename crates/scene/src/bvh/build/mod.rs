@@ -1,8 +1,10 @@
 //! Construction: a binary tree by binned surface-area heuristic ([`split`]), collapsed into the cheapest
-//! eight-wide one ([`collapse`]).
+//! eight-wide one ([`collapse`]); with [`spatial`] splits if they are asked for.
 
+mod clip;
 mod collapse;
 mod reference;
+mod spatial;
 mod split;
 
 use caustica_math::Vec3;
@@ -10,9 +12,11 @@ use rayon::prelude::*;
 
 use super::sphere::SphereData;
 use super::triangle::TriangleBlock;
-use super::{Bounds, Bvh, Child};
-use collapse::Flat;
+use super::{Bounds, Bvh, Child, TreeQuality};
+use collapse::{Flat, NO_TRIANGLE};
 use reference::{Extents, Reference};
+use spatial::Spatial;
+use split::{Place, Splitter};
 
 /// The deepest that a tree gets. Past [`split::SAH_DEPTH`] binary levels the ranges are halved at the
 /// median, which adds at most 27 more.
@@ -47,8 +51,10 @@ impl Primitives<'_> {
 }
 
 /// Builds the tree.
-pub(super) fn build(primitives: &Primitives<'_>) -> Bvh {
+pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
     let mut references = primitives.references();
+    let count = references.len();
+    let extent = Extents::of(&references).boxes;
     #[cfg(target_arch = "x86_64")]
     let avx2 = super::avx2::is_available();
     #[cfg(not(target_arch = "x86_64"))]
@@ -58,26 +64,33 @@ pub(super) fn build(primitives: &Primitives<'_>) -> Bvh {
         blocks: Vec::new(),
         spheres: Vec::new(),
         root: Child::NONE,
-        bounds: Extents::of(&references).boxes.bounds(),
+        bounds: extent.bounds(),
         avx2,
     };
     if references.is_empty() {
         return bvh;
     }
-    let tree = split::split(&mut references, 0, 0, primitives);
-    let ids: Vec<u32> = references.iter().map(Reference::id).collect();
-    drop(references);
-    let mut flat = Flat::new(&ids, primitives);
+    let spatial = match quality {
+        TreeQuality::Fast => None,
+        TreeQuality::Spatial => {
+            references.resize(spatial::room(count), Reference::new(Bounds::EMPTY, 0));
+            Some(Spatial::new(primitives, &extent))
+        }
+    };
+    let splitter = Splitter { primitives, spatial };
+    let (tree, _) = splitter.split(&mut references, count, Place { first: 0, depth: 0 });
+    let mut flat = Flat::new(&references, primitives);
     bvh.root = flat.root(&tree);
     let Flat { nodes, blocks, spheres, .. } = flat;
+    // What is not needed any more makes room for the blocks.
+    drop((tree, references));
     bvh.nodes = nodes;
     bvh.spheres = spheres;
     bvh.blocks = blocks
         .into_par_iter()
-        .map(|range| {
-            TriangleBlock::new(
-                ids[range.start as usize..range.end as usize].iter().map(|id| (*id, primitives.corners(*id))),
-            )
+        .map(|ids| {
+            let used = ids.into_iter().filter(|id| *id != NO_TRIANGLE);
+            TriangleBlock::new(used.map(|id| (id, primitives.corners(id))))
         })
         .collect();
     bvh

@@ -4,8 +4,9 @@ use wide::f32x4;
 
 use super::super::Bounds;
 use super::Primitives;
-use super::collapse::Tree;
+use super::collapse::{Costs, Tree};
 use super::reference::{Extent, Extents, Reference};
+use super::spatial::{Spatial, share};
 
 /// Levels that are split by the surface-area heuristic.
 pub(super) const SAH_DEPTH: usize = 48;
@@ -13,40 +14,93 @@ pub(super) const SAH_DEPTH: usize = 48;
 const LEAF_SIZE: usize = 4;
 const PARALLEL_SIZE: usize = 4096;
 
-/// The tree over `references`, which are sorted into its order; the first of them is number `offset` of all.
-pub(super) fn split(
-    references: &mut [Reference],
-    offset: usize,
-    depth: usize,
-    primitives: &Primitives<'_>,
-) -> Tree {
-    let count = references.len();
-    let is_sphere = |r: &Reference| primitives.is_sphere(r.id());
-    let extents = Extents::of(references);
-    let bounds = extents.boxes.bounds();
-    let spheres =
-        if primitives.spheres.is_empty() { 0 } else { references.iter().filter(|r| is_sphere(r)).count() };
-    let mixed = spheres != 0 && spheres != count;
-    if count <= LEAF_SIZE && !mixed {
-        return Tree::leaf(bounds, offset, [count - spheres, spheres]);
+/// What builds the binary tree.
+pub(super) struct Splitter<'a> {
+    pub primitives: &'a Primitives<'a>,
+    /// Spatial splits, if they are wanted.
+    pub spatial: Option<Spatial<'a>>,
+}
+
+/// Where a range of references stands.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// The number of its first reference among all.
+    pub first: usize,
+    pub depth: usize,
+}
+
+impl Splitter<'_> {
+    /// The tree over the first `count` references, which are sorted into its order; the others are room for more.
+    pub(super) fn split(&self, references: &mut [Reference], count: usize, place: Place) -> (Tree, Costs) {
+        let is_sphere = |r: &Reference| self.primitives.is_sphere(r.id());
+        let extents = Extents::of(&references[..count]);
+        let bounds = extents.boxes.bounds();
+        let spheres = if self.primitives.spheres.is_empty() {
+            0
+        } else {
+            references[..count].iter().filter(|r| is_sphere(r)).count()
+        };
+        let mixed = spheres != 0 && spheres != count;
+        if count <= LEAF_SIZE && !mixed {
+            return Tree::leaf(bounds, place.first, [count - spheres, spheres]);
+        }
+        let [left, right] = if count <= LEAF_SIZE {
+            sides(partition(&mut references[..count], |r| !is_sphere(r)), count)
+        } else if place.depth < SAH_DEPTH {
+            self.sah(references, count, &extents).unwrap_or([count / 2, count - count / 2])
+        } else {
+            sides(median(&mut references[..count], &bounds), count)
+        };
+        let room = references.len() - left - right;
+        let (front, back) = references[..left + right].split_at(left);
+        let middle = left + share(room, [front, back]);
+        references.copy_within(left..left + right, middle);
+        let (a, b) = references.split_at_mut(middle);
+        let below = Place { depth: place.depth + 1, ..place };
+        let beyond = Place { first: place.first + middle, ..below };
+        let build_a = |a| self.split(a, left, below);
+        let build_b = |b| self.split(b, right, beyond);
+        let children = if count > PARALLEL_SIZE {
+            rayon::join(|| build_a(a), || build_b(b))
+        } else {
+            (build_a(a), build_b(b))
+        };
+        let id = |i: u32| references[i as usize - place.first].id();
+        Tree::inner(bounds, children, self.spatial.is_some().then_some(&id))
     }
-    let middle = if count <= LEAF_SIZE {
-        partition(references, |r| !is_sphere(r))
-    } else if depth < SAH_DEPTH {
-        sah_middle(references, &extents.centers2).unwrap_or(count / 2)
-    } else {
-        median(references, &bounds)
-    };
-    let (left, right) = references.split_at_mut(middle);
-    let build_left = |l: &mut [Reference]| split(l, offset, depth + 1, primitives);
-    let build_right = |r: &mut [Reference]| split(r, offset + middle, depth + 1, primitives);
-    let children = if count > PARALLEL_SIZE {
-        let (a, b) = rayon::join(|| build_left(left), || build_right(right));
-        [a, b]
-    } else {
-        [build_left(left), build_right(right)]
-    };
-    Tree::inner(bounds, children)
+
+    /// Splits by the surface-area heuristic, with as many bins as the number of references is worth; returns how
+    /// many lie on each side. `None` if all centres coincide.
+    fn sah(&self, references: &mut [Reference], count: usize, extents: &Extents) -> Option<[usize; 2]> {
+        match count {
+            0..16 => self.sah_in_bins::<8>(references, count, extents),
+            16..64 => self.sah_in_bins::<16>(references, count, extents),
+            _ => self.sah_in_bins::<32>(references, count, extents),
+        }
+    }
+
+    fn sah_in_bins<const N: usize>(
+        &self,
+        references: &mut [Reference],
+        count: usize,
+        extents: &Extents,
+    ) -> Option<[usize; 2]> {
+        let bins = Bins::<N>::new(&references[..count], &extents.centers2);
+        let plane = bins.best()?;
+        if let Some(spatial) = &self.spatial
+            && spatial.is_worth_it(count, bins.overlap(&plane))
+            && let Some(sides) = spatial.split(references, count, &extents.boxes, plane.cost)
+        {
+            return Some(sides);
+        }
+        let is_below = |r: &Reference| bins.place(r)[plane.axis] <= plane.last;
+        Some(sides(partition(&mut references[..count], is_below), count))
+    }
+}
+
+/// How many lie on either side, if that many of all lie on the first.
+fn sides(left: usize, count: usize) -> [usize; 2] {
+    [left, count - left]
 }
 
 /// Halves the range at the median of the widest axis.
@@ -70,6 +124,14 @@ fn partition(references: &mut [Reference], left: impl Fn(&Reference) -> bool) ->
         }
     }
     middle
+}
+
+/// A plane between bins.
+struct Plane {
+    cost: f32,
+    axis: usize,
+    /// The last bin before it.
+    last: usize,
 }
 
 /// A bin: the box around references, and how many they are.
@@ -137,33 +199,30 @@ impl<const N: usize> Bins<N> {
         best
     }
 
-    /// Partitions by the cheapest of the planes between bins; `None` if all centres coincide.
-    fn partition(references: &mut [Reference], centers2: &Extent) -> Option<usize> {
-        let bins = Self::new(references, centers2);
-        let mut best: Option<(f32, usize, usize)> = None;
+    /// The cheapest of the planes between bins; `None` if all centres coincide.
+    fn best(&self) -> Option<Plane> {
+        let mut best: Option<Plane> = None;
         for axis in 0..3 {
-            if bins.scale.to_array()[axis] > 0.0
-                && let Some((cost, last)) = bins.best_plane(axis)
-                && best.is_none_or(|b| cost < b.0)
+            if self.scale.to_array()[axis] > 0.0
+                && let Some((cost, last)) = self.best_plane(axis)
+                && best.as_ref().is_none_or(|b| cost < b.cost)
             {
-                best = Some((cost, axis, last));
+                best = Some(Plane { cost, axis, last });
             }
         }
-        let (_, axis, last) = best?;
-        Some(partition(references, |r| bins.place(r)[axis] <= last))
+        best
+    }
+
+    /// The surface of what the boxes of both sides have in common.
+    fn overlap(&self, plane: &Plane) -> f32 {
+        let (below, above) = self.bins[plane.axis].split_at(plane.last + 1);
+        let [a, b] =
+            [below, above].map(|bins| bins.iter().fold((Extent::EMPTY, 0), |sum, bin| together(sum, *bin)).0);
+        Extent { min: a.min.fast_max(b.min), max: a.max.fast_min(b.max) }.bounds().half_area()
     }
 }
 
 #[inline(always)]
 fn together(a: Bin, b: Bin) -> Bin {
     (a.0.union(b.0.min, b.0.max), a.1 + b.1)
-}
-
-/// Partitions by the surface-area heuristic, with as many bins as the number of references is worth.
-fn sah_middle(references: &mut [Reference], centers2: &Extent) -> Option<usize> {
-    match references.len() {
-        0..16 => Bins::<8>::partition(references, centers2),
-        16..64 => Bins::<16>::partition(references, centers2),
-        _ => Bins::<32>::partition(references, centers2),
-    }
 }
