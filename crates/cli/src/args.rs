@@ -3,6 +3,7 @@ use std::time::Duration;
 
 use caustica::description::Crop;
 use caustica::film::ToneMap;
+use caustica::math::Sampler;
 use caustica::session::INTEGRATOR_NAMES;
 use caustica::transport::{Heuristic, StrategySet};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -105,6 +106,9 @@ pub struct Method {
     /// Seed of the sample streams
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
+    /// How samples are chosen
+    #[arg(long, value_enum, default_value_t = SamplerChoice::Sobol)]
+    pub sampler: SamplerChoice,
     /// Strategies (s, t) of bdpt, with s light and t camera vertices: `s=0`, `t>=2`, `2,3`, `s>=2&t>=2`,
     /// `s=0;s=1`, `all`. What is left stays unbiased where it reaches
     #[arg(long, value_name = "SET", default_value = "all")]
@@ -174,6 +178,23 @@ pub enum LightImageChoice {
     Only,
     /// Asked at the end
     Ask,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SamplerChoice {
+    /// Owen-scrambled Sobol' points, well spread over a pixel's samples and over neighbouring pixels
+    Sobol,
+    /// Each by itself: noisier, to compare with
+    Independent,
+}
+
+impl From<SamplerChoice> for Sampler {
+    fn from(choice: SamplerChoice) -> Self {
+        match choice {
+            SamplerChoice::Sobol => Self::Sobol,
+            SamplerChoice::Independent => Self::Independent,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -93,6 +93,7 @@ fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
         max_depth: method.max_depth,
         roulette_start: method.roulette_depth,
         seed: method.seed,
+        sampler: method.sampler.into(),
         strategies: method.strategies.clone(),
         heuristic: method.heuristic.into(),
         exhaustive_weights: false,

@@ -14,6 +14,7 @@ pub mod frame;
 pub mod pdf;
 pub mod spectrum;
 pub mod stats;
+mod strata;
 pub mod stream;
 pub mod transform;
 pub mod vector;
@@ -24,7 +25,7 @@ pub use filter::{Filter, PixelFilter};
 pub use frame::Frame;
 pub use pdf::{AreaPdf, Mass, SolidAnglePdf};
 pub use spectrum::{Rgb, Spectrum, Wavelengths};
-pub use stream::{SampleStream, StreamId};
+pub use stream::{SampleId, SampleStream, Sampler, StreamId};
 pub use transform::Transform;
 pub use vector::{Vec2, Vec3};
 

@@ -4,6 +4,8 @@
 //! a sample, so any sample can be made again, alone, in any order and on any machine.
 
 use crate::ONE_BELOW;
+pub use crate::strata::GROUP;
+use crate::strata::Strata;
 
 /// What names a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,14 +20,43 @@ pub struct StreamId {
     pub walk: u32,
 }
 
-/// Uniform numbers in [0, 1) of one walk of one sample.
-#[derive(Clone, Debug)]
-pub struct SampleStream {
-    key: u64,
-    dimension: u64,
+/// How the samples of a pixel are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Sampler {
+    /// Each by itself.
+    Independent,
+    /// Owen-scrambled Sobol' points, well spread over the samples of a pixel and over neighbouring pixels.
+    #[default]
+    Sobol,
 }
 
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+/// What names a sample of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SampleId {
+    /// The render's seed.
+    pub seed: u64,
+    /// The pixel in the full film.
+    pub pixel: [u32; 2],
+    /// The sample's index within the pixel.
+    pub sample: u32,
+}
+
+/// Uniform numbers in [0, 1) of one walk of one sample.
+///
+/// A stream has *slots*, each of one or two dimensions; a number is drawn from the next one.
+#[derive(Clone, Debug)]
+pub struct SampleStream {
+    source: Source,
+    slot: u64,
+}
+
+#[derive(Clone, Debug)]
+enum Source {
+    Hash { key: u64 },
+    Strata(Strata),
+}
+
+pub(crate) const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The finaliser of SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number
 /// Generators", OOPSLA 2014, with Stafford's variant 13 of the constants).
@@ -37,31 +68,54 @@ pub fn mix64(mut z: u64) -> u64 {
 }
 
 impl SampleStream {
-    /// The stream of that name, at its first dimension.
+    /// The stream of that name, of independent numbers, at its first slot.
     #[inline]
     pub fn new(id: StreamId) -> Self {
         let a = mix64(id.seed.wrapping_add(GOLDEN));
         let b = mix64(a ^ (u64::from(id.pixel) << 32 | u64::from(id.sample)));
-        Self { key: mix64(b.wrapping_add(u64::from(id.walk).wrapping_mul(GOLDEN))), dimension: 0 }
+        let key = mix64(b.wrapping_add(u64::from(id.walk).wrapping_mul(GOLDEN)));
+        Self { source: Source::Hash { key }, slot: 0 }
     }
 
+    /// The stream of a walk of a picture's sample, at its first slot.
     #[inline]
-    fn next_u64(&mut self) -> u64 {
-        self.dimension += 1;
-        mix64(self.key.wrapping_add(self.dimension.wrapping_mul(GOLDEN)))
+    pub fn of_sample(sampler: Sampler, id: SampleId, walk: u32) -> Self {
+        match sampler {
+            Sampler::Independent => {
+                let a = mix64(id.seed.wrapping_add(GOLDEN));
+                let b = mix64(a ^ (u64::from(id.pixel[1]) << 32 | u64::from(id.pixel[0])));
+                let c = mix64(b.wrapping_add(u64::from(walk) << 32 | u64::from(id.sample)));
+                Self { source: Source::Hash { key: c }, slot: 0 }
+            }
+            Sampler::Sobol => Self { source: Source::Strata(Strata::new(id, walk)), slot: 0 },
+        }
     }
 
-    /// The next dimension.
+    /// Goes to a slot.
+    #[inline]
+    pub fn seek(&mut self, slot: u64) -> &mut Self {
+        self.slot = slot;
+        self
+    }
+
+    /// The next slot's only dimension.
     #[inline]
     pub fn next_1d(&mut self) -> f32 {
-        to_unit((self.next_u64() >> 40) as u32)
+        self.next_2d()[0]
     }
 
-    /// The next two dimensions.
+    /// The next slot's two dimensions.
     #[inline]
     pub fn next_2d(&mut self) -> [f32; 2] {
-        let bits = self.next_u64();
-        [to_unit((bits >> 40) as u32), to_unit((bits as u32) >> 8)]
+        let slot = self.slot;
+        self.slot = slot.wrapping_add(1);
+        match &self.source {
+            Source::Hash { key } => {
+                let bits = mix64(key.wrapping_add(slot.wrapping_add(1).wrapping_mul(GOLDEN)));
+                [to_unit((bits >> 40) as u32), to_unit((bits as u32) >> 8)]
+            }
+            Source::Strata(strata) => strata.point(slot).map(|bits| to_unit(bits >> 8)),
+        }
     }
 }
 

@@ -3,7 +3,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use caustica_film::{Film, FilmError, FilmLayout, LightBuffer, Metadata, Window};
-use caustica_math::{Rgb, Vec2};
+use caustica_math::{Rgb, Sampler, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
 use caustica_transport::{Heuristic, Kernel, Scratch, Settings, Sink};
@@ -150,6 +150,7 @@ impl<'a> Session<'a> {
         let mut m = Metadata::new();
         m.set("integrator", report.integrator);
         m.set("seed", report.seed);
+        m.set("sampler", sampler_name(settings.sampler));
         m.set("seconds", format!("{:.3}", report.seconds));
         m.set("version", env!("CARGO_PKG_VERSION"));
         m.set("strategies", &settings.strategies);
@@ -310,6 +311,13 @@ impl Sink for FilmSink<'_, '_> {
             Some(buffer) => self.film.splat_into(buffer, self.kernel.filter(), film, value),
             None => self.film.splat_light(self.kernel.filter(), film, value),
         }
+    }
+}
+
+fn sampler_name(sampler: Sampler) -> &'static str {
+    match sampler {
+        Sampler::Independent => "independent",
+        Sampler::Sobol => "sobol",
     }
 }
 

@@ -2,35 +2,36 @@
 
 use std::f32::consts::PI;
 
-use caustica_math::{Rgb, SampleStream, StreamId, Vec3, warp};
+use caustica_math::{Rgb, SampleId, Vec3, warp};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::description::Integrator;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::kernel::{EyeSample, Kernel};
+use crate::numbers::{Bounces, EyeNumbers};
 use crate::sink::Sink;
 use crate::vertex::Vertex;
 
 impl Kernel<'_> {
-    pub(crate) fn direct_view<S: Sink>(&self, pixel: [u32; 2], id: StreamId, sink: &mut S) {
-        let EyeSample { filter_weight, ray, mut stream, .. } = self.eye_sample(pixel, id);
+    pub(crate) fn direct_view<S: Sink>(&self, id: SampleId, sink: &mut S) {
+        let EyeSample { filter_weight, ray, mut numbers, .. } = self.eye_sample(id);
         let camera_ray = Ray { origin: ray.origin, direction: ray.direction, t_max: ray.t_max };
         let seen = self.scene.closest(&camera_ray);
-        let value = seen.map_or(Rgb::BLACK, |p| self.view(&p, &camera_ray, &mut stream));
+        let value = seen.map_or(Rgb::BLACK, |p| self.view(&p, &camera_ray, &mut numbers));
         sink.eye(value * filter_weight);
     }
 
-    fn view(&self, p: &SurfacePoint, ray: &Ray, stream: &mut SampleStream) -> Rgb {
+    fn view(&self, p: &SurfacePoint, ray: &Ray, numbers: &mut EyeNumbers) -> Rgb {
         match self.settings.integrator {
             Integrator::Normals => Rgb(p.frame.z.abs().to_array()),
             Integrator::Depth => Rgb::splat((p.position - ray.origin).length()),
             Integrator::Ao => {
-                let d = p.frame.to_world(warp::cosine_hemisphere(stream.next_2d()));
+                let d = p.frame.to_world(warp::cosine_hemisphere(direction(numbers)));
                 Rgb::splat(self.open(p, d, f32::INFINITY))
             }
             Integrator::Av { length } => {
-                let mut local = warp::uniform_sphere(stream.next_2d());
+                let mut local = warp::uniform_sphere(direction(numbers));
                 local.z = local.z.abs();
                 Rgb::splat(self.open(p, p.frame.to_world(local), length))
             }
@@ -68,4 +69,10 @@ impl Kernel<'_> {
         let arriving = self.wavelengths.spectrum(irradiance) * self.open(p, towards, f32::INFINITY);
         self.wavelengths.rgb(scatter.value * arriving)
     }
+}
+
+/// The numbers of a direction at the first surface.
+fn direction(numbers: &mut EyeNumbers) -> [f32; 2] {
+    let [u0, u1, _] = numbers.bounce(0).u;
+    [u0, u1]
 }

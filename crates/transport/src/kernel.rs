@@ -1,12 +1,13 @@
 //! The kernel: a scene with the settings that it is rendered by.
 
 use caustica_math::filter::PixelFilter;
-use caustica_math::{SampleStream, Spectrum, StreamId, Vec2, Wavelengths};
+use caustica_math::{SampleId, Sampler, Spectrum, Vec2, Wavelengths};
 use caustica_scene::Scene;
 use caustica_scene::bvh::Ray;
 use caustica_scene::camera::CameraRay;
 use caustica_scene::description::Integrator;
 
+use crate::numbers::EyeNumbers;
 use crate::sink::Sink;
 use crate::strategy::{Classes, StrategySet};
 use crate::walk::{Flight, Subpath};
@@ -24,6 +25,8 @@ pub struct Settings {
     pub roulette_start: Option<u32>,
     /// The seed of all sample streams.
     pub seed: u64,
+    /// How samples are chosen.
+    pub sampler: Sampler,
     /// The strategies that `bdpt` uses.
     pub strategies: StrategySet,
     /// How `bdpt` weighs them.
@@ -40,6 +43,7 @@ impl Default for Settings {
             max_depth: None,
             roulette_start: None,
             seed: 0,
+            sampler: Sampler::default(),
             strategies: StrategySet::default(),
             heuristic: Heuristic::Balance,
             exhaustive_weights: false,
@@ -58,13 +62,6 @@ impl Settings {
 /// Longer paths than this are cut even without a limit, so that a scene of perfect mirrors ends. Roulette
 /// alone makes them rarer than one in 10⁴ of those that no surface absorbs.
 const LONGEST_PATH: u32 = 1024;
-
-/// Walks of a sample, which name its streams.
-pub(crate) mod streams {
-    pub const EYE: u32 = 0;
-    pub const LIGHT: u32 = 1;
-    pub const JOIN: u32 = 2;
-}
 
 /// Renders samples of one scene. Shared between threads; all that changes is in [`Scratch`] and the sink.
 #[derive(Debug)]
@@ -97,7 +94,7 @@ pub(crate) struct EyeSample {
     /// The filter's sign and size, by which the sample counts.
     pub filter_weight: f32,
     pub ray: CameraRay,
-    pub stream: SampleStream,
+    pub numbers: EyeNumbers,
 }
 
 impl<'a> Kernel<'a> {
@@ -145,29 +142,25 @@ impl<'a> Kernel<'a> {
     /// Renders one sample: one eye path through `pixel` (of the full picture) and, where the integrator has
     /// them, one light path. Calls [`Sink::eye`] once, unless the integrator has no eye paths.
     pub fn sample<S: Sink>(&self, pixel: [u32; 2], sample: u32, scratch: &mut Scratch, sink: &mut S) {
-        let id = StreamId {
-            seed: self.settings.seed,
-            pixel: pixel[1].wrapping_mul(self.scene.film.width).wrapping_add(pixel[0]),
-            sample,
-            walk: streams::EYE,
-        };
+        let id = SampleId { seed: self.settings.seed, pixel, sample };
         match self.settings.integrator {
-            Integrator::Bdpt => self.bdpt(pixel, id, scratch, sink),
+            Integrator::Bdpt => self.bdpt(id, scratch, sink),
             Integrator::Light => self.trace_light(id, sink),
-            Integrator::Path(technique) => self.path(pixel, id, technique, sink),
-            Integrator::Direct(technique) => self.direct(pixel, id, technique, sink),
-            Integrator::Whitted => self.whitted(pixel, id, sink),
-            _ => self.direct_view(pixel, id, sink),
+            Integrator::Path(technique) => self.path(id, technique, sink),
+            Integrator::Direct(technique) => self.direct(id, technique, sink),
+            Integrator::Whitted => self.whitted(id, sink),
+            _ => self.direct_view(id, sink),
         }
     }
 
     /// Draws the film position, by the pixel filter, and the camera ray.
-    pub(crate) fn eye_sample(&self, pixel: [u32; 2], id: StreamId) -> EyeSample {
-        let mut stream = SampleStream::new(id);
-        let (offset, filter_weight) = self.filter.sample(stream.next_2d());
-        let film = Vec2::new(pixel[0] as f32 + 0.5 + offset.x, pixel[1] as f32 + 0.5 + offset.y);
-        let ray = self.scene.camera.ray(film, stream.next_2d());
-        EyeSample { film, filter_weight, ray, stream }
+    pub(crate) fn eye_sample(&self, id: SampleId) -> EyeSample {
+        let mut numbers = EyeNumbers::new(self.settings.sampler, id);
+        let (offset, filter_weight) = self.filter.sample(numbers.film());
+        let [x, y] = id.pixel.map(|c| c as f32 + 0.5);
+        let film = Vec2::new(x + offset.x, y + offset.y);
+        let ray = self.scene.camera.ray(film, numbers.lens());
+        EyeSample { film, filter_weight, ray, numbers }
     }
 
     /// The first flight of a camera walk.

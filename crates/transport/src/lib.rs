@@ -9,6 +9,7 @@ mod direct_views;
 pub mod edge;
 mod kernel;
 mod light_tracer;
+mod numbers;
 mod path_tracer;
 pub mod sink;
 pub mod strategy;

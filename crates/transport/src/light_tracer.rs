@@ -1,22 +1,23 @@
 //! Pure light tracing: t = 1 alone, unweighted. Written apart from the bidirectional integrator, so that the
 //! two check each other.
 
-use caustica_math::{SampleStream, Spectrum, StreamId};
+use caustica_math::{SampleId, Spectrum};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 
 use crate::bdpt::emission_flight;
-use crate::kernel::{Kernel, streams};
+use crate::kernel::Kernel;
+use crate::numbers::{Bounces, LightNumbers};
 use crate::sink::Sink;
 use crate::vertex::Vertex;
 
 impl Kernel<'_> {
-    pub(crate) fn trace_light<S: Sink>(&self, id: StreamId, sink: &mut S) {
-        let mut stream = SampleStream::new(StreamId { walk: streams::LIGHT, ..id });
-        let (choice, u, v) = (stream.next_2d(), stream.next_2d(), stream.next_2d());
+    pub(crate) fn trace_light<S: Sink>(&self, id: SampleId, sink: &mut S) {
+        let mut numbers = LightNumbers::new(self.settings.sampler, id);
+        let [choice, u, v] = numbers.emission();
         let lights = self.scene.lights(self.wavelengths);
         let Some(emission) = lights.sample_emission(choice, u, v) else { return };
-        if let Some((lamp, link, radiance)) = self.lamp_link(&emission, stream.next_2d()) {
+        if let Some((lamp, link, radiance)) = self.lamp_link(&emission, numbers.lamp_lens()) {
             let arriving = link.pdf.0 * link.falloff * lamp.cos(link.direction);
             let value = radiance * (arriving / (emission.pdf.point.0 * self.light_paths));
             self.splat(link.film, value, sink);
@@ -27,15 +28,13 @@ impl Kernel<'_> {
         for bounce in 1..self.max_edges {
             let Some(point) = self.scene.closest(&ray) else { return };
             let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths);
-            self.splat_surface(&vertex, throughput, &mut stream, sink);
-            let [u0, u1] = stream.next_2d();
-            let Some((direction, s, _)) = vertex.sample(Walk::FromLight, [u0, u1, stream.next_1d()]) else {
-                return;
-            };
+            self.splat_surface(&vertex, throughput, numbers.lens(bounce - 1), sink);
+            let drawn = numbers.bounce(bounce - 1);
+            let Some((direction, s, _)) = vertex.sample(Walk::FromLight, drawn.u) else { return };
             throughput *= s.value * (1.0 / s.forward.0);
             if bounce >= self.roulette_start {
                 let survival = (throughput.max_lane() / first).min(0.95);
-                if stream.next_1d() >= survival {
+                if drawn.survival >= survival {
                     return;
                 }
                 throughput *= 1.0 / survival;
@@ -44,14 +43,7 @@ impl Kernel<'_> {
         }
     }
 
-    fn splat_surface<S: Sink>(
-        &self,
-        vertex: &Vertex,
-        throughput: Spectrum,
-        stream: &mut SampleStream,
-        sink: &mut S,
-    ) {
-        let lens = stream.next_2d();
+    fn splat_surface<S: Sink>(&self, vertex: &Vertex, throughput: Spectrum, lens: [f32; 2], sink: &mut S) {
         if !vertex.is_connectible() {
             return;
         }

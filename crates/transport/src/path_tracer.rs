@@ -1,7 +1,7 @@
 //! Unidirectional path tracing in its three techniques, direct light, and Whitted's chains. Written apart from
 //! the bidirectional integrator, so that the two check each other.
 
-use caustica_math::{SampleStream, Spectrum, StreamId, Vec3};
+use caustica_math::{SampleId, Spectrum, Vec3};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::description::Technique;
@@ -9,6 +9,7 @@ use caustica_scene::light::LightPoint;
 
 use crate::edge::Edge;
 use crate::kernel::{EyeSample, Kernel};
+use crate::numbers::Bounces;
 use crate::sink::Sink;
 use crate::vertex::Vertex;
 
@@ -30,26 +31,25 @@ enum Chain {
 }
 
 impl Kernel<'_> {
-    pub(crate) fn path<S: Sink>(&self, pixel: [u32; 2], id: StreamId, technique: Technique, sink: &mut S) {
-        self.trace_eye(pixel, id, (technique, self.max_edges, Chain::Scatters), sink);
+    pub(crate) fn path<S: Sink>(&self, id: SampleId, technique: Technique, sink: &mut S) {
+        self.trace_eye(id, (technique, self.max_edges, Chain::Scatters), sink);
     }
 
-    pub(crate) fn direct<S: Sink>(&self, pixel: [u32; 2], id: StreamId, technique: Technique, sink: &mut S) {
-        self.trace_eye(pixel, id, (technique, self.max_edges.min(2), Chain::Scatters), sink);
+    pub(crate) fn direct<S: Sink>(&self, id: SampleId, technique: Technique, sink: &mut S) {
+        self.trace_eye(id, (technique, self.max_edges.min(2), Chain::Scatters), sink);
     }
 
-    pub(crate) fn whitted<S: Sink>(&self, pixel: [u32; 2], id: StreamId, sink: &mut S) {
-        self.trace_eye(pixel, id, (Technique::Emitters, self.max_edges, Chain::Ends), sink);
+    pub(crate) fn whitted<S: Sink>(&self, id: SampleId, sink: &mut S) {
+        self.trace_eye(id, (Technique::Emitters, self.max_edges, Chain::Ends), sink);
     }
 
     fn trace_eye<S: Sink>(
         &self,
-        pixel: [u32; 2],
-        id: StreamId,
+        id: SampleId,
         (technique, max_edges, chain): (Technique, usize, Chain),
         sink: &mut S,
     ) {
-        let EyeSample { filter_weight, ray, mut stream, .. } = self.eye_sample(pixel, id);
+        let EyeSample { filter_weight, ray, mut numbers, .. } = self.eye_sample(id);
         let mut ray = Ray { origin: ray.origin, direction: ray.direction, t_max: ray.t_max };
         let (mut throughput, mut radiance_scale) = (Spectrum::ONE, 1.0);
         let mut sum = Spectrum::ZERO;
@@ -67,16 +67,13 @@ impl Kernel<'_> {
                 break;
             }
             if technique != Technique::Materials && vertex.is_connectible() {
-                sum += throughput * self.direct_light(&vertex, technique, &mut stream);
+                sum += throughput * self.direct_light(&vertex, technique, numbers.next_event(edges - 1));
             }
             if chain == Chain::Ends && vertex.is_connectible() {
                 break;
             }
-            let [u0, u1] = stream.next_2d();
-            let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, [u0, u1, stream.next_1d()])
-            else {
-                break;
-            };
+            let bounce = numbers.bounce(edges - 1);
+            let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
             throughput *= s.value * (1.0 / s.forward.0);
             radiance_scale *= vertex.radiance_scale(direction);
             arrival = if delta {
@@ -87,7 +84,7 @@ impl Kernel<'_> {
             if edges >= self.roulette_start {
                 // Nori's rule: the throughput without the radiance scale of refraction, at most 0.99.
                 let survival = (throughput.max_lane() / radiance_scale).min(0.99);
-                if stream.next_1d() >= survival {
+                if bounce.survival >= survival {
                     break;
                 }
                 throughput *= 1.0 / survival;
@@ -132,8 +129,12 @@ impl Kernel<'_> {
     }
 
     /// Next-event estimation, weighed against hitting the lamp.
-    fn direct_light(&self, vertex: &Vertex, technique: Technique, stream: &mut SampleStream) -> Spectrum {
-        let (choice, u) = (stream.next_2d(), stream.next_2d());
+    fn direct_light(
+        &self,
+        vertex: &Vertex,
+        technique: Technique,
+        (choice, u): ([f32; 2], [f32; 2]),
+    ) -> Spectrum {
         let lights = self.scene.lights(self.wavelengths);
         let Some(found) = lights.sample_towards(vertex.point.position, choice, u) else {
             return Spectrum::ZERO;

@@ -1,12 +1,13 @@
 //! Random walks: how subpaths grow.
 
-use caustica_math::{SampleStream, Spectrum, Vec3};
+use caustica_math::{Spectrum, Vec3};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::light::Emission;
 
 use crate::edge::Edge;
 use crate::kernel::Kernel;
+use crate::numbers::{Bounce, Bounces};
 use crate::vertex::Vertex;
 use crate::weight::{RunningSums, Step};
 
@@ -77,7 +78,7 @@ impl Kernel<'_> {
         &self,
         mut flight: Flight,
         start: &Start<'_>,
-        stream: &mut SampleStream,
+        numbers: &mut impl Bounces,
         path: &mut Subpath,
     ) {
         path.vertices.clear();
@@ -112,8 +113,9 @@ impl Kernel<'_> {
             if path.vertices.len() == max_edges {
                 return;
             }
-            if !self.scatter(walk, &mut flight, stream, path)
-                || !self.survives(&mut flight, first_throughput, (path.vertices.len(), stream))
+            let bounce = numbers.bounce(path.vertices.len() - 1);
+            if !self.scatter(walk, &mut flight, &bounce, path)
+                || !self.survives(&mut flight, first_throughput, (path.vertices.len(), &bounce))
             {
                 return;
             }
@@ -123,17 +125,9 @@ impl Kernel<'_> {
     /// Scatters at the last vertex: sets up the next flight, and tells the vertex before the last its density
     /// by the opposite walk. False if the walk ends.
     #[inline]
-    fn scatter(
-        &self,
-        walk: Walk,
-        flight: &mut Flight,
-        stream: &mut SampleStream,
-        path: &mut Subpath,
-    ) -> bool {
-        let [u0, u1] = stream.next_2d();
-        let u2 = stream.next_1d();
+    fn scatter(&self, walk: Walk, flight: &mut Flight, bounce: &Bounce, path: &mut Subpath) -> bool {
         let Some((vertex, before)) = path.vertices.split_last_mut() else { return false };
-        let Some((direction, scatter, delta)) = vertex.sample(walk, [u0, u1, u2]) else { return false };
+        let Some((direction, scatter, delta)) = vertex.sample(walk, bounce.u) else { return false };
         vertex.delta = delta;
         flight.throughput *= scatter.value * (1.0 / scatter.forward.0);
         flight.pdf = scatter.forward.0;
@@ -159,7 +153,7 @@ impl Kernel<'_> {
         &self,
         flight: &mut Flight,
         first_throughput: f32,
-        (bounces, stream): (usize, &mut SampleStream),
+        (bounces, bounce): (usize, &Bounce),
     ) -> bool {
         if bounces < self.roulette_start {
             return true;
@@ -167,7 +161,7 @@ impl Kernel<'_> {
         let left = self.wavelengths.luminance(flight.throughput) / (flight.radiance_scale * first_throughput);
         let survival = left.min(MAX_SURVIVAL);
         // A NaN fails the comparison and ends the walk.
-        let survives = stream.next_1d() < survival;
+        let survives = bounce.survival < survival;
         flight.throughput *= 1.0 / survival;
         survives
     }

@@ -1,6 +1,6 @@
 use caustica_import::TestKind;
 use caustica_math::stats::{Moments, sidak, student_t_test};
-use caustica_math::{Filter, Rgb, SampleStream, StreamId, Vec2, Vec3, Wavelengths};
+use caustica_math::{Filter, Rgb, SampleStream, Sampler, StreamId, Vec2, Vec3, Wavelengths};
 use caustica_scene::bsdf::{Bsdf, Walk};
 use caustica_scene::description::{Crop, Integrator};
 use caustica_scene::light::Anchor;
@@ -190,7 +190,10 @@ fn emitters(stage: &Description) -> Vec<(Option<Origin>, Description)> {
 
 /// Estimates of the film's mean luminance.
 fn film_means(scene: &Scene, integrator: Integrator, block: Block, values: &mut [f64]) {
-    let kernel = Kernel::new(scene, Settings { integrator, seed: block.seed, ..Settings::default() });
+    // The t-test counts every sample as independent of the others.
+    let sampler = Sampler::Independent;
+    let kernel =
+        Kernel::new(scene, Settings { integrator, seed: block.seed, sampler, ..Settings::default() });
     let mut scratch = Scratch::default();
     let window = scene.film.window();
     for (i, value) in values.iter_mut().enumerate() {

@@ -8,12 +8,13 @@ mod splat;
 
 use std::cell::RefCell;
 
-use caustica_math::{SampleStream, Spectrum, StreamId, Vec2};
+use caustica_math::{SampleId, Spectrum, Vec2};
 use caustica_scene::bvh::Ray;
 use caustica_scene::camera::{CameraLink, CameraPoint};
 use caustica_scene::light::{Anchor, Emission, LightPoint};
 
-use crate::kernel::{EyeSample, Kernel, Scratch, streams};
+use crate::kernel::{EyeSample, Kernel, Scratch};
+use crate::numbers::LightNumbers;
 use crate::sink::{Contribution, PathView, Sink};
 use crate::strategy::Strategy;
 use crate::walk::{Flight, Start, Subpath};
@@ -80,14 +81,18 @@ impl Joined {
 }
 
 impl Kernel<'_> {
-    pub(crate) fn bdpt<S: Sink>(&self, pixel: [u32; 2], id: StreamId, scratch: &mut Scratch, sink: &mut S) {
-        let EyeSample { film, filter_weight, ray, mut stream } = self.eye_sample(pixel, id);
+    pub(crate) fn bdpt<S: Sink>(&self, id: SampleId, scratch: &mut Scratch, sink: &mut S) {
+        let EyeSample { film, filter_weight, ray, mut numbers } = self.eye_sample(id);
+        let mut light_numbers = LightNumbers::new(self.settings.sampler, id);
         let classes = self.classes;
         if classes.hit || classes.next_event || classes.inner {
-            self.grow(Self::camera_flight(&ray), &Start::Camera, &mut stream, &mut scratch.eye);
+            self.grow(Self::camera_flight(&ray), &Start::Camera, &mut numbers, &mut scratch.eye);
         }
-        let emission =
-            if classes.splat || classes.inner { self.light_path(id, &mut scratch.light) } else { None };
+        let emission = if classes.splat || classes.inner {
+            self.light_path(&mut light_numbers, &mut scratch.light)
+        } else {
+            None
+        };
         let Scratch { eye, light, densities } = scratch;
         let densities = RefCell::new(densities);
         let sample = Sample { eye, light, emission, camera: ray.point, film, densities };
@@ -95,26 +100,24 @@ impl Kernel<'_> {
         if classes.hit {
             sum += self.hits(&sample, sink);
         }
-        let mut stream = SampleStream::new(StreamId { walk: streams::JOIN, ..id });
         if classes.next_event {
-            sum += self.next_events(&sample, &mut stream, sink);
+            sum += self.next_events(&sample, &mut numbers, sink);
         }
         if classes.inner {
             sum += self.connections(&sample, sink);
         }
         if classes.splat {
-            self.splats(&sample, &mut stream, sink);
+            self.splats(&sample, &mut light_numbers, sink);
         }
         sink.eye(self.wavelengths.rgb(sum * filter_weight));
     }
 
     /// Emits and grows the light path.
-    fn light_path(&self, id: StreamId, path: &mut Subpath) -> Option<Emission> {
+    fn light_path(&self, numbers: &mut LightNumbers, path: &mut Subpath) -> Option<Emission> {
         path.vertices.clear();
-        let mut stream = SampleStream::new(StreamId { walk: streams::LIGHT, ..id });
-        let (choice, u, v) = (stream.next_2d(), stream.next_2d(), stream.next_2d());
+        let [choice, u, v] = numbers.emission();
         let emission = self.scene.lights(self.wavelengths).sample_emission(choice, u, v)?;
-        self.grow(emission_flight(&emission), &Start::Light(&emission), &mut stream, path);
+        self.grow(emission_flight(&emission), &Start::Light(&emission), numbers, path);
         Some(emission)
     }
 

@@ -1,6 +1,6 @@
 //! s = 1: next-event estimation.
 
-use caustica_math::{SampleStream, Spectrum};
+use caustica_math::Spectrum;
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::light::Towards;
@@ -8,6 +8,7 @@ use caustica_scene::light::Towards;
 use super::{Junction, Sample};
 use crate::edge::Edge;
 use crate::kernel::Kernel;
+use crate::numbers::EyeNumbers;
 use crate::sink::Sink;
 use crate::strategy::Strategy;
 use crate::vertex::Vertex;
@@ -18,7 +19,7 @@ impl Kernel<'_> {
     pub(super) fn next_events<S: Sink>(
         &self,
         sample: &Sample<'_>,
-        stream: &mut SampleStream,
+        numbers: &mut EyeNumbers,
         sink: &mut S,
     ) -> Spectrum {
         let lights = self.scene.lights(self.wavelengths);
@@ -27,10 +28,10 @@ impl Kernel<'_> {
         let count = sample.eye.vertices.len().min(self.max_edges - 1);
         for i in 0..count {
             let vertex = &sample.eye.vertices[i];
-            let (choice, u) = (stream.next_2d(), stream.next_2d());
             if !vertex.is_connectible() {
                 continue;
             }
+            let (choice, u) = numbers.next_event(i);
             let Some(found) = lights.sample_towards(vertex.point.position, choice, u) else { continue };
             sum += self.next_event(sample, i + 2, &found, sink).unwrap_or(Spectrum::ZERO);
         }

@@ -1,6 +1,6 @@
 //! t = 1: the light image.
 
-use caustica_math::{SampleStream, Spectrum, Vec2};
+use caustica_math::{Spectrum, Vec2};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::camera::CameraLink;
@@ -8,6 +8,7 @@ use caustica_scene::light::{Emission, LightPoint};
 
 use super::{Joined, Junction, Sample};
 use crate::kernel::Kernel;
+use crate::numbers::LightNumbers;
 use crate::sink::Sink;
 use crate::strategy::Strategy;
 use crate::vertex::{Scatter, Vertex};
@@ -15,16 +16,14 @@ use crate::weight::weight;
 
 impl Kernel<'_> {
     /// t = 1: the lamp's point and every light vertex, into the light image.
-    pub(super) fn splats<S: Sink>(&self, sample: &Sample<'_>, stream: &mut SampleStream, sink: &mut S) {
+    pub(super) fn splats<S: Sink>(&self, sample: &Sample<'_>, numbers: &mut LightNumbers, sink: &mut S) {
         let Some(emission) = sample.emission else { return };
-        let lens = stream.next_2d();
-        if let Some(value) = self.splat_lamp(sample, &emission, lens, sink) {
+        if let Some(value) = self.splat_lamp(sample, &emission, numbers.lamp_lens(), sink) {
             self.splat(value.1, value.0, sink);
         }
         for i in 0..sample.light.vertices.len() {
-            let lens = stream.next_2d();
             if sample.light.vertices[i].is_connectible()
-                && let Some((value, film)) = self.splat_vertex(sample, i, lens, sink)
+                && let Some((value, film)) = self.splat_vertex(sample, i, numbers.lens(i), sink)
             {
                 self.splat(film, value, sink);
             }
