@@ -84,7 +84,7 @@ impl SampleStream {
             Sampler::Independent => {
                 let a = mix64(id.seed.wrapping_add(GOLDEN));
                 let b = mix64(a ^ (u64::from(id.pixel[1]) << 32 | u64::from(id.pixel[0])));
-                let c = mix64(b.wrapping_add(u64::from(walk) << 32 | u64::from(id.sample)));
+                let c = mix64(b ^ (u64::from(walk) << 32 | u64::from(id.sample)));
                 Self { source: Source::Hash { key: c }, slot: 0 }
             }
             Sampler::Sobol => Self { source: Source::Strata(Strata::new(id, walk)), slot: 0 },

@@ -71,6 +71,9 @@ impl Sink for Blocks<'_, '_> {
 }
 
 /// A picture's estimate: the luminance of each block, over passes of one sample a pixel.
+///
+/// Passes of stratified samples depend on each other: the mean's variance is less than what passes tell of it. So
+/// tests by that variance err to the safe side, as far as they would with independent samples.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     /// Means and variances over the passes.

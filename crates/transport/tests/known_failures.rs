@@ -78,7 +78,8 @@ fn shading_normals() {
         .agree(leaning_normals(grey(0.8)), &[Bdpt, Path, Light, Only("s=0;s=1&t>2;s>=2&t!=2")]);
     check("leaning, rough glass").agree(leaning_normals(scenes::rough_glass_kind()), &[Bdpt, Path, Light]);
     check("leaning, metal").agree(leaning_normals(scenes::metal_kind(Some(0.3))), &[Bdpt, Path, Light]);
-    check("leaning, glass").agree(leaning_normals(scenes::glass_kind(false)), &[Bdpt, Naive, NoLightImage]);
+    let glass = Check { passes: 1000, ..check("leaning, glass") };
+    glass.agree(leaning_normals(scenes::glass_kind(false)), &[Bdpt, Naive, NoLightImage]);
 }
 
 /// A lamp with vertex normals that lean from the geometric ones emits the same however it is found.
@@ -133,7 +134,9 @@ fn specular_chains_between_diffuse_surfaces() {
 fn narrow_spots() {
     for in_view in [true, false] {
         check("wide spot").agree(spot(in_view, 20.0, 50.0), &[Bdpt, Path, Light]);
-        check("spot with an edge").agree(spot(in_view, 12.0, 12.0), &[Bdpt, Path, Light]);
+        // By `path` a corner of the picture gets one contribution in twenty passes.
+        let edge = Check { passes: 1000, ..check("spot with an edge") };
+        edge.agree(spot(in_view, 12.0, 12.0), &[Bdpt, Path, Light]);
         check("narrow spot").agree(spot(in_view, 3.0, 4.0), &[Bdpt, Light, Only("s>=2")]);
     }
 }
