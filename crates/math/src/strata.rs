@@ -43,6 +43,9 @@ pub(crate) struct Strata {
     reversed: u32,
     /// The pixel's index within its tile in Z-order, reversed too.
     pixel: u32,
+    /// The last group, and `reversed` as it was shuffled for that.
+    group: u64,
+    shuffled: u32,
 }
 
 impl Strata {
@@ -58,15 +61,20 @@ impl Strata {
             sample,
             reversed: sample.reverse_bits(),
             pixel: z.reverse_bits() >> (32 - 2 * TILE_BITS),
+            group: u64::MAX,
+            shuffled: 0,
         }
     }
 
     /// The point of a slot, as fractions of 2³².
     #[inline]
-    pub fn point(&self, slot: u64) -> [u32; 2] {
+    pub fn point(&mut self, slot: u64) -> [u32; 2] {
         let of_slot = self.hash(slot << 1 | 1);
-        let shuffled = owen(self.reversed, self.hash((slot / GROUP) << 1) as u32);
-        let [sx, sy] = sample_part(self.sample, shuffled, (slot % GROUP) as usize);
+        if self.group != slot / GROUP {
+            self.group = slot / GROUP;
+            self.shuffled = owen(self.reversed, self.hash(self.group << 1) as u32);
+        }
+        let [sx, sy] = sample_part(self.sample, self.shuffled, (slot % GROUP) as usize);
         let [px, py] = pixel_part(owen(self.pixel, (of_slot.wrapping_mul(GOLDEN) >> 32) as u32));
         let x = owen(sx ^ px, of_slot as u32);
         let y = owen(sy ^ py, (of_slot >> 32) as u32);
@@ -186,7 +194,7 @@ const fn series(bit: u32) -> [u32; 2] {
         inverse = over_q(inverse);
         i += 1;
     }
-    if bit % 2 == 0 { [inverse, inverse] } else { [inverse << 1, inverse ^ inverse << 1] }
+    if bit.is_multiple_of(2) { [inverse, inverse] } else { [inverse << 1, inverse ^ inverse << 1] }
 }
 
 /// A power series divided by 1 + x + x².

@@ -109,7 +109,7 @@ impl SampleStream {
     pub fn next_2d(&mut self) -> [f32; 2] {
         let slot = self.slot;
         self.slot = slot.wrapping_add(1);
-        match &self.source {
+        match &mut self.source {
             Source::Hash { key } => {
                 let bits = mix64(key.wrapping_add(slot.wrapping_add(1).wrapping_mul(GOLDEN)));
                 [to_unit((bits >> 40) as u32), to_unit((bits as u32) >> 8)]
