@@ -1,23 +1,26 @@
 //! Which sample numbers a walk uses for what.
 //!
 //! What is drawn at a vertex has slots of its own, whether or not it was needed at the vertices before: samples of a
-//! pixel stay comparable, and so stratified. The slots of one group are stratified jointly; so a group holds a bounce
-//! together with what is drawn where it arrives.
+//! pixel stay comparable, and so stratified. The slots of one group are stratified jointly: the choice of a lamp (and
+//! of its triangle) with the place on it, the direction of a bounce with the lobe.
 
 use caustica_math::stream::GROUP;
 use caustica_math::{SampleId, SampleStream, Sampler};
 
-// The slots of a group; those of the first group belong to the walk's start, those of each next one to a bounce.
+// The slots of a walk's start, and then of each of its bounces: two groups of two.
+const SLOTS: u64 = 2 * GROUP;
 const FILM: u64 = 0;
 const LENS: u64 = 1;
-const LAMP_POINT: u64 = 0;
-const LAMP_DIRECTION: u64 = 1;
+const LAMP_DIRECTION: u64 = 0;
 const BOUNCE: u64 = 0;
+/// Of the lobe and of roulette.
 const LOBE: u64 = 1;
-/// Of the lamp: for the next event after a bounce of an eye path; of emission.
+/// Of the choice of a lamp: for the next event after a bounce of an eye path, or of emission.
 const CHOICE: u64 = 2;
-/// Of what the surface after a start or bounce is joined with: a point on a lamp, or on the lens.
-const JOINED: u64 = 3;
+/// Of the place on a lamp that goes with the choice.
+const POINT: u64 = 3;
+/// Of the place on the lens that a light path's vertex is joined with.
+const JOINED: u64 = 1;
 
 /// The numbers of one bounce.
 pub(crate) struct Bounce {
@@ -32,10 +35,10 @@ pub(crate) trait Bounces {
     /// The stream of all.
     fn stream(&mut self) -> &mut SampleStream;
 
-    /// The numbers of a slot of the walk's start (group 0) or of the bounce at the surface vertex of index group − 1.
+    /// The numbers of a slot of the walk's start (0), or of the bounce at the surface vertex of that index (from 1).
     #[inline]
-    fn draw(&mut self, group: usize, slot: u64) -> [f32; 2] {
-        self.stream().seek(group as u64 * GROUP + slot).next_2d()
+    fn draw(&mut self, bounce: usize, slot: u64) -> [f32; 2] {
+        self.stream().seek(bounce as u64 * SLOTS + slot).next_2d()
     }
 
     /// Those of the bounce at the surface vertex of that index (from 0).
@@ -68,7 +71,7 @@ impl EyeNumbers {
     /// Of next-event estimation at the surface vertex of that index: the choice of the lamp, the place on it.
     #[inline]
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
-        (self.draw(vertex, CHOICE), self.draw(vertex, JOINED))
+        (self.draw(vertex, CHOICE), self.draw(vertex, POINT))
     }
 }
 
@@ -89,7 +92,7 @@ impl LightNumbers {
 
     /// Of the emission: the choice of the lamp, the place on it, the direction.
     pub fn emission(&mut self) -> [[f32; 2]; 3] {
-        [CHOICE, LAMP_POINT, LAMP_DIRECTION].map(|slot| self.draw(0, slot))
+        [CHOICE, POINT, LAMP_DIRECTION].map(|slot| self.draw(0, slot))
     }
 
     /// Of the place on the lens that the lamp's point is joined with.
@@ -100,8 +103,8 @@ impl LightNumbers {
     /// Of the place on the lens that the surface vertex of that index is joined with.
     #[inline]
     pub fn lens(&mut self, vertex: usize) -> [f32; 2] {
-        // That of the group before would be joined better, but it is the lamp's.
-        self.draw(vertex + 1, JOINED)
+        // The slot of a light path's next events, which there are none of.
+        self.draw(vertex + 1, POINT)
     }
 }
 
