@@ -1,27 +1,30 @@
 //! Which sample numbers a walk uses for what.
 //!
 //! What is drawn at a vertex has slots of its own, whether or not it was needed at the vertices before: samples of a
-//! pixel stay comparable, and so stratified. The slots of one group are stratified jointly; so a group holds a bounce
-//! together with what is drawn where it arrives.
+//! pixel stay comparable, and so stratified. The slots of one group are stratified jointly: the choice of a lamp (and
+//! of its triangle) with the place on it, the direction of a bounce with the lobe.
 
 use caustica_math::stream::GROUP;
 use caustica_math::{SampleId, SampleStream, Sampler};
 use caustica_scene::Scene;
 use caustica_scene::bsdf::Bsdf;
 
-// The slots of a group; those of the first group belong to the walk's start, those of each next one to a bounce.
+// The slots of a walk's start, and then of each of its bounces: two groups of two.
+const SLOTS: u64 = 2 * GROUP;
 const FILM: u64 = 0;
 const LENS: u64 = 1;
-const LAMP_POINT: u64 = 0;
-const LAMP_DIRECTION: u64 = 1;
+const LAMP_DIRECTION: u64 = 0;
 const BOUNCE: u64 = 0;
+/// Of the lobe and of roulette.
 const LOBE: u64 = 1;
-/// Of the lamp: for the next event after a bounce of an eye path; of emission.
+/// Of the choice of a lamp: for the next event after a bounce of an eye path, or of emission.
 const CHOICE: u64 = 2;
-/// Of what the surface after a start or bounce is joined with: a point on a lamp, or on the lens.
-const JOINED: u64 = 3;
+/// Of the place on a lamp that goes with the choice.
+const POINT: u64 = 3;
+/// Of the place on the lens that a lamp's point is joined with.
+const JOINED: u64 = 1;
 
-/// A group beyond those of all bounces.
+/// In place of a bounce's number, beyond all of them.
 const CANDIDATES: usize = 1 << 16;
 
 /// The numbers of one bounce.
@@ -52,15 +55,15 @@ pub(crate) trait Bounces {
     /// The stream of all.
     fn stream(&mut self) -> &mut SampleStream;
 
-    /// The numbers of a slot of the walk's start (group 0) or of the bounce at the surface vertex of index group − 1.
+    /// The numbers of a slot of the walk's start (0), or of the bounce at the surface vertex of that index (from 1).
     #[inline]
-    fn draw(&mut self, group: usize, slot: u64) -> [f32; 2] {
-        self.stream().seek(group as u64 * GROUP + slot).next_2d()
+    fn draw(&mut self, bounce: usize, slot: u64) -> [f32; 2] {
+        self.stream().seek(bounce as u64 * SLOTS + slot).next_2d()
     }
 
     #[inline]
-    fn draw_if(&mut self, needed: bool, group: usize, slot: u64) -> [f32; 2] {
-        if needed { self.draw(group, slot) } else { [0.0; 2] }
+    fn draw_if(&mut self, needed: bool, bounce: usize, slot: u64) -> [f32; 2] {
+        if needed { self.draw(bounce, slot) } else { [0.0; 2] }
     }
 
     /// Those of the bounce at the surface vertex of that index (from 0), as far as the BSDF there and roulette need
@@ -102,7 +105,7 @@ impl EyeNumbers {
     /// Of next-event estimation at the surface vertex of that index: the choice of the lamp, the place on it.
     #[inline]
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
-        (self.draw_if(self.needs.choice, vertex, CHOICE), self.draw(vertex, JOINED))
+        (self.draw_if(self.needs.choice, vertex, CHOICE), self.draw(vertex, POINT))
     }
 }
 
@@ -133,7 +136,7 @@ impl LightNumbers {
 
     /// Of the emission: the choice of the lamp, the place on it, the direction.
     pub fn emission(&mut self) -> [[f32; 2]; 3] {
-        [self.draw_if(self.needs.choice, 0, CHOICE), self.draw(0, LAMP_POINT), self.draw(0, LAMP_DIRECTION)]
+        [self.draw_if(self.needs.choice, 0, CHOICE), self.draw(0, POINT), self.draw(0, LAMP_DIRECTION)]
     }
 
     /// Of the place on the lens that the lamp's point is joined with.
@@ -144,8 +147,8 @@ impl LightNumbers {
     /// Of the place on the lens that the surface vertex of that index is joined with.
     #[inline]
     pub fn lens(&mut self, vertex: usize) -> [f32; 2] {
-        // That of the group before would be joined better, but it is the lamp's.
-        self.draw_if(self.needs.lens, vertex + 1, JOINED)
+        // The slot of a light path's next events, which there are none of.
+        self.draw_if(self.needs.lens, vertex + 1, POINT)
     }
 }
 
