@@ -135,17 +135,6 @@ impl Film {
     /// The same into a thread's own buffer, which [`Film::flush`] adds to the film.
     #[inline]
     pub fn splat_into(&self, buffer: &mut LightBuffer, filter: &PixelFilter, position: Vec2, value: Rgb) {
-        // A splat is as many cache misses as it has rows. Asking for all of them first lets them overlap.
-        let window = self.layout.window;
-        let columns = reach(position.x, filter.radius(), window.x, window.width);
-        if let (Some(first), Some(last)) = (columns.clone().next(), columns.last()) {
-            for y in reach(position.y, filter.radius(), window.y, window.height) {
-                let start = (y - window.y) as usize * window.width as usize;
-                for x in [first, last] {
-                    std::hint::black_box(buffer.sums[start + (x - window.x) as usize][0]);
-                }
-            }
-        }
         self.splat(filter, position, value, |index, counts| {
             for (sum, count) in buffer.sums[index].iter_mut().zip(counts) {
                 *sum = sum.wrapping_add(count);
@@ -335,9 +324,17 @@ fn is_finite(value: Rgb) -> bool {
 #[inline]
 fn reach(position: f32, radius: f32, start: u32, count: u32) -> Range<u32> {
     let end = start + count;
-    let first = (position - radius - 0.5).ceil().clamp(start as f32, end as f32);
-    let last = (position + radius - 0.5).floor().clamp(start as f32 - 1.0, end as f32 - 1.0);
-    first as u32..(last + 1.0) as u32
+    let first = ceil(position - radius - 0.5).clamp(i64::from(start), i64::from(end));
+    let last = (-ceil(0.5 - position - radius)).clamp(i64::from(start) - 1, i64::from(end) - 1);
+    first as u32..(last + 1) as u32
+}
+
+/// The smallest integer that is not less. (Not every CPU that this is compiled for has an instruction for it; the
+/// library's function would take longer than a splat.)
+#[inline]
+fn ceil(x: f32) -> i64 {
+    let whole = x as i64;
+    whole.saturating_add(i64::from(x > whole as f32))
 }
 
 #[cfg(test)]

@@ -9,13 +9,16 @@
 mod avx2;
 mod build;
 mod lanes;
+mod pages;
 mod ray;
 mod sphere;
 mod traverse;
 mod triangle;
 
+use bytemuck::{Pod, Zeroable};
 use caustica_math::Vec3;
 
+use pages::Pages;
 pub use sphere::SphereData;
 use triangle::TriangleBlock;
 
@@ -96,20 +99,21 @@ impl Bounds {
 }
 
 /// An inner node: the boxes of its children, one lane each, and what they are.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(64))]
 struct Node {
     /// Lower x, y, z, then upper x, y, z.
     bounds: [[f32; WIDTH]; 6],
     /// The largest first.
     children: [Child; WIDTH],
+    padding: [u32; WIDTH],
 }
 
 /// Children of a node.
 const WIDTH: usize = 8;
 
 /// A packed reference to a node or a leaf.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(transparent)]
 struct Child(u32);
 
@@ -168,8 +172,8 @@ pub enum TreeQuality {
 /// The tree.
 #[derive(Debug)]
 pub struct Bvh {
-    nodes: Vec<Node>,
-    blocks: Vec<TriangleBlock>,
+    nodes: Pages<Node>,
+    blocks: Pages<TriangleBlock>,
     spheres: Vec<(SphereData, u32)>,
     /// Where every ray begins: the first node, or nothing.
     root: Child,

@@ -8,7 +8,7 @@ use caustica_math::Vec3;
 use super::build::MAX_DEPTH;
 use super::lanes::{Lanes, Portable};
 use super::ray::{LaneRay, is_parallel};
-use super::triangle::{BLOCK, Best, NOTHING, SPHERE};
+use super::triangle::{BLOCK, Best, NOTHING, SPHERE, TriangleBlock};
 use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
@@ -83,12 +83,13 @@ pub(super) fn first_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
 fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let lanes = LaneRay::<L, P>::new(ray);
     let mut best = Best::<L>::new(ray.t_max);
+    let (nodes, blocks): (&[Node], &[TriangleBlock]) = (&bvh.nodes, &bvh.blocks);
     let (mut stack, mut waiting) = (Stack::new(), 0);
     let mut current = bvh.root;
     loop {
         while !current.is_leaf() {
             // SAFETY: children that are no leaves are indices of nodes.
-            let node = unsafe { bvh.nodes.get_unchecked(current.0 as usize) };
+            let node = unsafe { nodes.get_unchecked(current.0 as usize) };
             let (mask, t_near) = lanes.enter(&node.bounds, L::splat(best.t));
             if mask == 0 {
                 break;
@@ -107,11 +108,11 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             current = child_of(unsafe { stack.read(waiting) });
         }
         if current.is_leaf() {
-            test_leaf(bvh, current, ray, &lanes, &mut best);
+            test_leaf((bvh, blocks), current, ray, &lanes, &mut best);
         }
         loop {
             if waiting == 0 {
-                return finish(bvh, &best);
+                return finish(blocks, &best);
             }
             waiting -= 1;
             // SAFETY: what waits has been written.
@@ -176,7 +177,7 @@ fn lane(mask: u32) -> usize {
 }
 
 #[inline(always)]
-fn finish<L: Lanes>(bvh: &Bvh, best: &Best<L>) -> Option<Hit> {
+fn finish<L: Lanes>(blocks: &[TriangleBlock], best: &Best<L>) -> Option<Hit> {
     let (t, primitive) = (best.t, best.primitive);
     if primitive == NOTHING {
         return None;
@@ -187,13 +188,13 @@ fn finish<L: Lanes>(bvh: &Bvh, best: &Best<L>) -> Option<Hit> {
     let lane = best.place % BLOCK;
     let (v, w, det) = (best.edges[0].store()[lane], best.edges[1].store()[lane], best.det.store()[lane]);
     // SAFETY: the place is where a triangle was hit.
-    let corners = unsafe { bvh.blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
+    let corners = unsafe { blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
     Some(Hit { t, primitive, b1: v / det, b2: w / det, corners })
 }
 
 #[inline(always)]
 fn test_leaf<L: Lanes, const P: bool>(
-    bvh: &Bvh,
+    (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
     ray: &Ray,
     lanes: &LaneRay<L, P>,
@@ -202,7 +203,7 @@ fn test_leaf<L: Lanes, const P: bool>(
     if !leaf.holds_spheres() {
         for index in leaf.range() {
             // SAFETY: leaves without spheres are ranges of blocks.
-            unsafe { bvh.blocks.get_unchecked(index) }.closest(index, lanes, best);
+            unsafe { blocks.get_unchecked(index) }.closest(index, lanes, best);
         }
         return;
     }
@@ -236,12 +237,13 @@ pub(super) fn any_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> bool {
 fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
     let lanes = LaneRay::<L, P>::new(ray);
     let t_max = L::splat(ray.t_max);
+    let (nodes, blocks): (&[Node], &[TriangleBlock]) = (&bvh.nodes, &bvh.blocks);
     let (mut stack, mut waiting) = (Stack::new(), 0);
     let mut current = bvh.root;
     loop {
         while !current.is_leaf() {
             // SAFETY: children that are no leaves are indices of nodes.
-            let node = unsafe { bvh.nodes.get_unchecked(current.0 as usize) };
+            let node = unsafe { nodes.get_unchecked(current.0 as usize) };
             let (mut mask, _) = lanes.enter(&node.bounds, t_max);
             if mask == 0 {
                 break;
@@ -257,7 +259,7 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
                 waiting += 1;
             }
         }
-        if current.is_leaf() && is_hit(bvh, current, ray, &lanes) {
+        if current.is_leaf() && is_hit((bvh, blocks), current, ray, &lanes) {
             return true;
         }
         if waiting == 0 {
@@ -271,12 +273,17 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
 
 /// Whether anything in the leaf is hit.
 #[inline(always)]
-fn is_hit<L: Lanes, const P: bool>(bvh: &Bvh, leaf: Child, ray: &Ray, lanes: &LaneRay<L, P>) -> bool {
+fn is_hit<L: Lanes, const P: bool>(
+    (bvh, blocks): (&Bvh, &[TriangleBlock]),
+    leaf: Child,
+    ray: &Ray,
+    lanes: &LaneRay<L, P>,
+) -> bool {
     if leaf.holds_spheres() {
         return is_sphere_hit(bvh, leaf, ray);
     }
     // SAFETY: leaves without spheres are ranges of blocks.
-    for block in unsafe { bvh.blocks.get_unchecked(leaf.range()) } {
+    for block in unsafe { blocks.get_unchecked(leaf.range()) } {
         if block.any(lanes, ray.t_max) {
             return true;
         }

@@ -1,5 +1,6 @@
 //! Leaves: triangles, eight at a time.
 
+use bytemuck::{Pod, Zeroable};
 use caustica_math::Vec3;
 
 use super::lanes::Lanes;
@@ -9,7 +10,7 @@ use super::ray::LaneRay;
 pub(super) const BLOCK: usize = 8;
 
 /// Up to eight triangles, corner by corner and axis by axis. Unused lanes repeat the first triangle.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub(super) struct TriangleBlock {
     corners: [[[f32; BLOCK]; 3]; 3],

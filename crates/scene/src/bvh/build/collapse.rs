@@ -234,6 +234,7 @@ const EMPTY_NODE: Node = Node {
         [f32::NEG_INFINITY; WIDTH],
     ],
     children: [Child::NONE; WIDTH],
+    padding: [0; WIDTH],
 };
 
 fn set_child(node: &mut Node, lane: usize, bounds: Bounds, child: Child) {

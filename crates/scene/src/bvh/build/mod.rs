@@ -10,6 +10,7 @@ mod split;
 use caustica_math::Vec3;
 use rayon::prelude::*;
 
+use super::pages::Pages;
 use super::sphere::SphereData;
 use super::triangle::TriangleBlock;
 use super::{Bounds, Bvh, Child, TreeQuality};
@@ -60,8 +61,8 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
     #[cfg(not(target_arch = "x86_64"))]
     let avx2 = false;
     let mut bvh = Bvh {
-        nodes: Vec::new(),
-        blocks: Vec::new(),
+        nodes: Pages::zeroed(0),
+        blocks: Pages::zeroed(0),
         spheres: Vec::new(),
         root: Child::NONE,
         bounds: extent.bounds(),
@@ -84,14 +85,14 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
     let Flat { nodes, blocks, spheres, .. } = flat;
     // What is not needed any more makes room for the blocks.
     drop((tree, references));
-    bvh.nodes = nodes;
+    bvh.nodes = Pages::zeroed(nodes.len());
+    bvh.nodes.copy_from_slice(&nodes);
+    drop(nodes);
     bvh.spheres = spheres;
-    bvh.blocks = blocks
-        .into_par_iter()
-        .map(|ids| {
-            let used = ids.into_iter().filter(|id| *id != NO_TRIANGLE);
-            TriangleBlock::new(used.map(|id| (id, primitives.corners(id))))
-        })
-        .collect();
+    bvh.blocks = Pages::zeroed(blocks.len());
+    bvh.blocks.par_iter_mut().zip(blocks).for_each(|(block, ids)| {
+        let used = ids.into_iter().filter(|id| *id != NO_TRIANGLE);
+        *block = TriangleBlock::new(used.map(|id| (id, primitives.corners(id))));
+    });
     bvh
 }
