@@ -54,7 +54,7 @@ fn help_tells_exit_codes_and_defaults() {
     for word in [
         "bdpt         bidirectional",
         "[default: all]",
-        "[default: 1 for bdpt and light, 3 for the others]",
+        "[default: 1 for bdpt and light, 5 for the others]",
         "[default: on]",
         "60s, 5m",
     ] {
