@@ -34,8 +34,8 @@ RULES = [(stage, re.compile(file), re.compile(function)) for stage, file, functi
     ("lamps", r"scene/src/light/|math/src/(spherical|distribution)\.rs", r""),
     ("surface points and vertices",
      r"scene/src/(surface|scene|material|texture)\.rs|transport/src/vertex\.rs", r""),
-    ("connections and weights", r"bdpt/(connection|hit|next_event)\.rs|transport/src/(weight|edge|strategy)\.rs", r""),
-    ("connections and weights", r"bdpt/mod\.rs|walk\.rs", r"finish|first_sums|step|escape|joined"),
+    ("connections and weights", r"bdpt/(candidate|connection|hit|next_event)\.rs|transport/src/(weight|edge|strategy)\.rs", r""),
+    ("connections and weights", r"bdpt/mod\.rs|walk\.rs", r"finish|weigh|report|first_sums|step|escape|joined"),
     ("walks", r"transport/src/(walk|path_tracer|direct_views)\.rs|bdpt/mod\.rs", r""),
 ]]
 OPTIONS = ["--dump-instr=yes", "--cache-sim=yes", "--branch-sim=yes", f"--LL={measure.LEVEL_2}"]

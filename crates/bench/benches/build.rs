@@ -5,6 +5,7 @@
 use std::time::Instant;
 
 use caustica_bench::rooms::Room;
+use caustica_bench::timing::median;
 use caustica_math::{Rgb, Transform};
 use caustica_scene::Scene;
 use caustica_scene::bvh::Bvh;
@@ -25,7 +26,7 @@ fn main() {
 }
 
 fn build_tree(room: &Room) {
-    let mut times: Vec<f64> = (0..7)
+    let times: Vec<f64> = (0..7)
         .map(|_| {
             let start = Instant::now();
             let tree = Bvh::new(&room.positions, &room.triangles, &[]);
@@ -33,8 +34,8 @@ fn build_tree(room: &Room) {
             start.elapsed().as_secs_f64()
         })
         .collect();
-    times.sort_by(f64::total_cmp);
-    println!("{} triangles: median {:.3} s, best {:.3} s", room.triangles.len(), times[3], times[0]);
+    let best = times.iter().copied().fold(f64::INFINITY, f64::min);
+    println!("{} triangles: median {:.3} s, best {best:.3} s", room.triangles.len(), median(times));
 }
 
 fn build_scene(room: Room) {

@@ -1,12 +1,12 @@
 //! Rays a second against Embree 4 in its fast mode, one ray a call, every hit checked against it. Without an
 //! Embree library it prints our own figures alone.
 
-use std::hint::black_box;
 use std::time::Instant;
 
 use caustica_bench::embree::Embree;
 use caustica_bench::rays::Rays;
 use caustica_bench::rooms::Room;
+use caustica_bench::timing::{median, seconds};
 use caustica_scene::bvh::{Bvh, Ray};
 
 const ROUNDS: usize = 9;
@@ -76,22 +76,6 @@ fn check_closest(what: &str, tree: &Bvh, embree: &Embree, rays: &[Ray]) {
     println!("{what:12} {wrong} of {} hits differ, {near} on a neighbour at the same distance", rays.len());
 }
 
-/// Seconds for all rays.
-fn seconds(rays: &[Ray], threads: usize, ask: &(impl Fn(&Ray) -> bool + Sync)) -> f64 {
-    let start = Instant::now();
-    std::thread::scope(|scope| {
-        for part in rays.chunks(rays.len().div_ceil(threads)) {
-            scope.spawn(move || black_box(part.iter().filter(|r| ask(r)).count()));
-        }
-    });
-    start.elapsed().as_secs_f64()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
-}
-
 /// Times both in turn and prints the medians and the median of the ratios.
 fn report(
     what: &str,
@@ -108,10 +92,10 @@ fn report(
         }
     }
     let million = rays.len() as f64 / 1e6;
-    let speed = |t: &Vec<f64>| million / median(t.clone());
+    let speed = |t: &[f64]| million / median(t.iter().copied());
     print!("{what:12} {threads} thread(s): {:6.2} million rays/s", speed(&own));
     if !peer.is_empty() {
-        let ratio = median(peer.iter().zip(&own).map(|(p, o)| p / o).collect());
+        let ratio = median(peer.iter().zip(&own).map(|(p, o)| p / o));
         print!(", Embree {:6.2}, ratio {ratio:.2}", speed(&peer));
     }
     println!();

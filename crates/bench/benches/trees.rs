@@ -1,11 +1,11 @@
 //! Trees with spatial splits against plain ones: time and memory to build, rays a second side by side, and
 //! whether every hit is the same.
 
-use std::hint::black_box;
 use std::time::Instant;
 
 use caustica_bench::rays::Rays;
 use caustica_bench::rooms::Room;
+use caustica_bench::timing::{median, seconds};
 use caustica_scene::bvh::{Bvh, Ray, TreeQuality};
 
 const ROUNDS: usize = 9;
@@ -42,15 +42,9 @@ fn compare(what: &str, room: &Room) {
 }
 
 /// Times both trees in turn and prints the median speed of the plain one and the median of the ratios.
-fn report(what: &str, rays: &[Ray], differ: usize, ask: [impl Fn(&Ray) -> bool; 2]) {
-    let seconds = |ask: &dyn Fn(&[Ray]) -> usize| {
-        let start = Instant::now();
-        black_box(ask(rays));
-        start.elapsed().as_secs_f64()
-    };
-    let rounds: Vec<[f64; 2]> = (0..ROUNDS)
-        .map(|_| [0, 1].map(|i| seconds(&|rays: &[Ray]| rays.iter().filter(|r| ask[i](r)).count())))
-        .collect();
+fn report(what: &str, rays: &[Ray], differ: usize, ask: [impl Fn(&Ray) -> bool + Sync; 2]) {
+    let rounds: Vec<[f64; 2]> =
+        (0..ROUNDS).map(|_| ask.each_ref().map(|ask| seconds(rays, 1, ask))).collect();
     let plain = median(rounds.iter().map(|[plain, _]| *plain));
     let ratio = median(rounds.iter().map(|[plain, spatial]| plain / spatial));
     println!(
@@ -58,10 +52,4 @@ fn report(what: &str, rays: &[Ray], differ: usize, ask: [impl Fn(&Ray) -> bool; 
         rays.len(),
         rays.len() as f64 / 1e6 / plain
     );
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
 }

@@ -4,3 +4,4 @@
 pub mod embree;
 pub mod rays;
 pub mod rooms;
+pub mod timing;

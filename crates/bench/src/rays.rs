@@ -58,12 +58,12 @@ impl Rays {
             light.clear();
             light.extend(walk(room, tree, ray, &mut s, &mut rays.bounce));
             for z in &eye_path {
-                rays.next_event.push(segment(z.off(lamp - z.position), self::lamp(&mut s)));
+                rays.next_event.push(Ray::between(z.off(lamp - z.position), self::lamp(&mut s)));
                 for y in &light {
                     let d: Vec3 = y.position - z.position;
                     // A renderer does not ask where both cosines are zero.
                     if d.dot(z.normal) > 0.0 && d.dot(y.normal) < 0.0 {
-                        rays.connection.push(segment(z.off(d), y.off(-d)));
+                        rays.connection.push(Ray::between(z.off(d), y.off(-d)));
                     }
                 }
             }
@@ -79,10 +79,6 @@ fn stream(walk: u32, sample: u32) -> SampleStream {
 fn lamp(s: &mut SampleStream) -> Vec3 {
     let [x, y] = s.next_2d();
     Vec3::new((x - 0.5) * 0.5, (y - 0.5) * 0.5, 0.99) * HALF
-}
-
-fn segment(from: Vec3, to: Vec3) -> Ray {
-    Ray { origin: from, direction: to - from, t_max: 1.0 }
 }
 
 /// Follows diffuse bounces; adds the rays that were shot after the first.

@@ -329,8 +329,8 @@ fn reach(position: f32, radius: f32, start: u32, count: u32) -> Range<u32> {
     first as u32..(last + 1) as u32
 }
 
-/// The smallest integer that is not less, within what 32 bits hold. (Not every CPU that this is compiled for has an instruction for it; the
-/// library's function would take longer than a splat.)
+/// The smallest integer that is not less, within what 32 bits hold. (Not every CPU that this is compiled for has an
+/// instruction for it, and a library's function would take longer than all else here.)
 #[inline]
 fn ceil(x: f32) -> i64 {
     let whole = x as i32;

@@ -13,13 +13,15 @@ const TURNS: f32 = 0.5 * std::f32::consts::FRAC_1_PI;
 /// A position relative to the place from which it is seen.
 pub type Relative = [f64; 3];
 
+/// The scalar product.
 #[inline]
-fn dot(a: Relative, b: Relative) -> f64 {
+pub fn dot(a: Relative, b: Relative) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// The vector product.
 #[inline]
-fn cross(a: Relative, b: Relative) -> Relative {
+pub fn cross(a: Relative, b: Relative) -> Relative {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 

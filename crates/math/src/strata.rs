@@ -20,9 +20,9 @@
 //!
 //! Slots come in groups of [`GROUP`]. Those of one group share their order of samples up to a linear map that was
 //! searched for stratification in all four dimensions. (Four slots to a group did no better in the mean, and now and
-//! then worse than independent samples: in eight dimensions some coarse product of digits is always left out.) Between groups, and everywhere between
-//! pixels, orders are shuffled and points scrambled by hashes, nested, so that nets stay nets: Burley, "Practical
-//! Hash-based Owen Scrambling", JCGT 9(4), 2020.
+//! then worse than independent samples: in eight dimensions some coarse product of digits is always left out.)
+//! Between groups, and everywhere between pixels, orders are shuffled and points scrambled by hashes, nested, so that
+//! nets stay nets: Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
 
 use crate::stream::{GOLDEN, SampleId, mix64};
 

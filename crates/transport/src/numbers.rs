@@ -107,9 +107,7 @@ impl EyeNumbers {
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
         (self.draw_if(self.needs.choice, vertex, CHOICE), self.draw(vertex, POINT))
     }
-}
 
-impl EyeNumbers {
     /// Of roulette among what the path can be joined with.
     pub fn candidates(&mut self) -> f32 {
         self.draw(CANDIDATES, LOBE)[0]

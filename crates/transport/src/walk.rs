@@ -116,7 +116,7 @@ impl Kernel<'_> {
             let roulette = path.vertices.len() >= self.roulette_start;
             let bounce = numbers.bounce(path.vertices.len() - 1, &vertex.bsdf, roulette);
             if !self.scatter(walk, &mut flight, &bounce, path)
-                || !self.survives(&mut flight, first_throughput, (path.vertices.len(), &bounce))
+                || roulette && !survives(&mut flight, first_throughput, bounce.survival)
             {
                 return;
             }
@@ -146,25 +146,6 @@ impl Kernel<'_> {
             None => path.origin_reverse = reverse,
         }
         true
-    }
-
-    /// Russian roulette by what is left of the throughput, from the set number of bounces on.
-    #[inline]
-    fn survives(
-        &self,
-        flight: &mut Flight,
-        first_throughput: f32,
-        (bounces, bounce): (usize, &Bounce),
-    ) -> bool {
-        if bounces < self.roulette_start {
-            return true;
-        }
-        let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
-        let survival = left.min(MAX_SURVIVAL);
-        // A NaN fails the comparison and ends the walk.
-        let survives = bounce.survival < survival;
-        flight.throughput *= 1.0 / survival;
-        survives
     }
 
     /// The sums of the vertex at the end of the flight.
@@ -218,4 +199,14 @@ impl Kernel<'_> {
         let direction = flight.ray.direction;
         Escape { direction, throughput: flight.throughput, forward, back, sums }
     }
+}
+
+/// Russian roulette by what is left of the throughput.
+#[inline]
+fn survives(flight: &mut Flight, first_throughput: f32, u: f32) -> bool {
+    let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
+    let survival = left.min(MAX_SURVIVAL);
+    flight.throughput *= 1.0 / survival;
+    // A NaN fails the comparison and ends the walk.
+    u < survival
 }

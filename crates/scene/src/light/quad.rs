@@ -1,6 +1,6 @@
 //! A lamp of two triangles that are a parallelogram: most lamps are. It is sampled as a whole.
 
-use caustica_math::spherical::{SphericalRectangle, SphericalTriangle};
+use caustica_math::spherical::{Relative, SphericalRectangle, SphericalTriangle, cross, dot};
 use caustica_math::{AreaPdf, ONE_BELOW, Vec2, Vec3};
 
 use super::seen::{NEAR, Near, Seen, least_height, relative};
@@ -44,9 +44,9 @@ struct Half {
 /// Unit vectors along the sides and across, and the lengths of the sides.
 #[derive(Debug)]
 struct Axes {
-    x: [f64; 3],
-    y: [f64; 3],
-    normal: [f64; 3],
+    x: Relative,
+    y: Relative,
+    normal: Relative,
     size: [f64; 2],
     inverse_size: [f64; 2],
 }
@@ -124,28 +124,28 @@ impl Quad {
     fn seen_from_near(&self, from: Vec3) -> Seen<Shape> {
         let [first, second] = &self.halves;
         let corner = relative(first.corner, from);
-        let dot = |a: [f64; 3]| a[0] * corner[0] + a[1] * corner[1] + a[2] * corner[2];
-        let (height, shape, solid_angle) = if let Some(axes) = &self.rectangle {
-            let height = -dot(axes.normal);
-            if height <= self.least_height {
-                return Seen::ByArea;
-            }
-            let shape = SphericalRectangle::new([dot(axes.x), dot(axes.y)], axes.size, height);
-            (height, Shape::Rectangle(shape, axes.inverse_size), shape.solid_angle())
+        let normal = self.rectangle.as_ref().map_or_else(|| wide(self.normal), |axes| axes.normal);
+        let height = -dot(normal, corner);
+        if height <= self.least_height {
+            return Seen::ByArea;
+        }
+        let (shape, solid_angle) = if let Some(axes) = &self.rectangle {
+            let place = [dot(axes.x, corner), dot(axes.y, corner)];
+            let shape = SphericalRectangle::new(place, axes.size, height);
+            (Shape::Rectangle(shape, axes.inverse_size), shape.solid_angle())
         } else {
-            let height = -dot(self.normal.to_array().map(f64::from));
-            if height <= self.least_height {
-                return Seen::ByArea;
-            }
-            let triangle = |h: &Half| {
+            let triangles = [first, second].map(|h| {
                 let corners = [h.corner, h.corner + h.sides[0], h.corner + h.sides[1]];
                 SphericalTriangle::new(corners.map(|c| relative(c, from)))
-            };
-            let triangles = [triangle(first), triangle(second)];
-            (height, Shape::Triangles(triangles), triangles[0].solid_angle() + triangles[1].solid_angle())
+            });
+            (Shape::Triangles(triangles), triangles[0].solid_angle() + triangles[1].solid_angle())
         };
         Seen::Near(Near { shape, height: height as f32, solid_angle })
     }
+}
+
+fn wide(v: Vec3) -> Relative {
+    v.to_array().map(f64::from)
 }
 
 impl Shape {
@@ -173,15 +173,13 @@ impl Shape {
 impl Axes {
     /// `None` if the sides are not at right angles.
     fn new(sides: [Vec3; 2]) -> Option<Self> {
-        let [u, v] = sides.map(|s| s.to_array().map(f64::from));
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let [u, v] = sides.map(wide);
         let size = [u, v].map(|s| dot(s, s).sqrt());
         let (x, y) = (u.map(|c| c / size[0]), v.map(|c| c / size[1]));
-        let normal = [x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]];
         (dot(x, y).abs() <= f64::from(RECTANGLE)).then_some(Self {
             x,
             y,
-            normal,
+            normal: cross(x, y),
             size,
             inverse_size: size.map(|s| 1.0 / s),
         })

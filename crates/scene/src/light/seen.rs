@@ -1,6 +1,6 @@
 //! From where a flat lamp is looked for by area, and from where by the solid angle that it covers.
 
-use caustica_math::spherical::{Relative, SphericalTriangle};
+use caustica_math::spherical::{Relative, SphericalTriangle, cross, dot};
 use caustica_math::{AreaPdf, Vec3};
 
 use super::LightPoint;
@@ -119,8 +119,7 @@ fn triangle(corners: [Vec3; 3], from: Vec3) -> Seen<SphericalTriangle> {
 fn near_triangle(corners: [Vec3; 3], from: Vec3) -> Seen<SphericalTriangle> {
     let [a, b, c] = corners.map(|corner| relative(corner, from));
     let [u, v] = [b, c].map(|p| [p[0] - a[0], p[1] - a[1], p[2] - a[2]]);
-    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    let dot = |p: Relative, q: Relative| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let normal = cross(u, v);
     let height = -dot(normal, a) / dot(normal, normal).sqrt();
     let extent = corners.iter().fold(0.0, |m: f32, p| m.max(p.abs().max_element()));
     if height.is_nan() || height <= least_height(extent * POSITION_ERROR) {

@@ -67,19 +67,19 @@ impl Kernel<'_> {
         let mut sum = Spectrum::ZERO;
         let total = candidates.list.iter().fold(certain, |all, c| all + c.value * c.weight);
         let least = if S::KEEPS_ALL { 0.0 } else { NEGLIGIBLE * total.max_lane() };
-        let offset = if least > 0.0 { numbers.candidates() } else { 0.0 };
         // One number decides for all: of the sums of probabilities, those pass that step over an integer.
-        let mut position = offset;
+        let mut position = None;
         for (i, c) in candidates.list.iter().enumerate() {
             let contribution = (c.value * c.weight).max_lane();
             let mut survival = 1.0;
             if contribution < least {
                 survival = contribution / least;
-                position += survival;
-                if position < 1.0 {
+                let position = position.get_or_insert_with(|| numbers.candidates());
+                *position += survival;
+                if *position < 1.0 {
                     continue;
                 }
-                position -= 1.0;
+                *position -= 1.0;
             }
             if self.scene.occluded(&c.ray) {
                 continue;
