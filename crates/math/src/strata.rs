@@ -18,16 +18,16 @@
 //! net is. (The construction is that of Niederreiter and Xing with a second place for the index; without pixels it
 //! is Sobol's.)
 //!
-//! Slots come in groups of [`GROUP`]. Those of one group share their order of samples up to a linear map that was
-//! searched for stratification in all four dimensions. (Four slots to a group did no better in the mean, and now and
-//! then worse than independent samples: in eight dimensions some coarse product of digits is always left out.)
-//! Between groups, and everywhere between pixels, orders are shuffled and points scrambled by hashes, nested, so that
-//! nets stay nets: Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
+//! Slots come in groups of [`GROUP`]. Those of one group share their order of samples up to linear maps that were
+//! searched for stratification of any two of them in four dimensions. (Of all four together some coarse product of
+//! digits is always left out, and is so in every pixel: put together what is smooth in most of it.) Between groups,
+//! and everywhere between pixels, orders are shuffled and points scrambled by hashes, nested, so that nets stay nets:
+//! Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
 
 use crate::stream::{GOLDEN, SampleId, mix64};
 
 /// Slots of a group.
-pub const GROUP: u64 = 2;
+pub const GROUP: u64 = 4;
 
 /// log₂ of the edge of a tile in pixels. Each tile has scrambles of its own; within it the pixels are one net.
 const TILE_BITS: u32 = 8;
@@ -58,7 +58,7 @@ impl Strata {
         let of_tile = mix64(of_seed.wrapping_add(tile.wrapping_mul(GOLDEN)));
         let z = spread(x) | spread(y) << 1;
         Self {
-            key: mix64(of_tile.wrapping_add(u64::from(walk).wrapping_mul(GOLDEN))),
+            key: mix64(of_tile.wrapping_add(u64::from(walk) << 16)),
             sample,
             reversed: sample.reverse_bits(),
             pixel: z.reverse_bits() >> (32 - 2 * TILE_BITS),
@@ -107,13 +107,21 @@ fn sample_part(sample: u32, shuffled: u32, member: usize) -> [u32; 2] {
     [both & 0xffff ^ kept, both >> 16 ^ pascal(kept)]
 }
 
-/// Columns of the maps of a group's members: upper triangular with ones on the diagonal, the second found by random
-/// search from column to column for the fewest singular minors of the generators in four dimensions.
+/// Columns of the maps of a group's members: upper triangular with ones on the diagonal, found by random search
+/// from column to column for the fewest singular minors of any two members' generators, in four dimensions.
 const COLUMNS: [[u16; 16]; GROUP as usize] = [
     [1, 2, 4, 8, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 0x400, 0x800, 0x1000, 0x2000, 0x4000, 0x8000],
     [
-        0x0001, 0x0002, 0x0005, 0x000b, 0x0016, 0x003f, 0x005d, 0x008a, 0x01d3, 0x0358, 0x042e, 0x088e,
-        0x186d, 0x25d7, 0x6454, 0xfbab,
+        0x0001, 0x0002, 0x0005, 0x000b, 0x0013, 0x0038, 0x005a, 0x00ff, 0x01f0, 0x02c9, 0x0546, 0x0c78,
+        0x19a6, 0x29ac, 0x587b, 0x8431,
+    ],
+    [
+        0x0001, 0x0003, 0x0004, 0x000c, 0x0011, 0x0032, 0x0060, 0x00bf, 0x012d, 0x0224, 0x05b4, 0x0a10,
+        0x12b5, 0x26bf, 0x4f8b, 0x8779,
+    ],
+    [
+        0x0001, 0x0002, 0x0004, 0x0009, 0x0013, 0x003b, 0x0055, 0x00b0, 0x01e3, 0x03e4, 0x044f, 0x0d94,
+        0x1970, 0x2f72, 0x6954, 0xaf37,
     ],
 ];
 

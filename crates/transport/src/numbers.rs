@@ -1,31 +1,31 @@
 //! Which sample numbers a walk uses for what.
 //!
 //! What is drawn at a vertex has slots of its own, whether or not it was needed at the vertices before: samples of a
-//! pixel stay comparable, and so stratified. The slots of one group are stratified jointly: the choice of a lamp (and
-//! of its triangle) with the place on it, the direction of a bounce with the lobe.
+//! pixel stay comparable, and so stratified. The slots of one group are stratified jointly. In an eye path a bounce
+//! stands with the lamp that is looked for where it arrives. In a light path, where all that the emission draws acts
+//! together, such large groups were worse than independent samples now and then: it has smaller ones.
 
 use caustica_math::stream::GROUP;
 use caustica_math::{SampleId, SampleStream, Sampler};
 use caustica_scene::Scene;
 use caustica_scene::bsdf::Bsdf;
 
-// The slots of a walk's start, and then of each of its bounces: two groups of two.
-const SLOTS: u64 = 2 * GROUP;
+// The slots of a group.
 const FILM: u64 = 0;
 const LENS: u64 = 1;
-const LAMP_DIRECTION: u64 = 0;
+/// Of the direction of a bounce.
 const BOUNCE: u64 = 0;
 /// Of the lobe and of roulette.
 const LOBE: u64 = 1;
-/// Of the choice of a lamp: for the next event after a bounce of an eye path, or of emission.
+/// Of the choice of a lamp.
 const CHOICE: u64 = 2;
-/// Of the place on a lamp that goes with the choice.
+/// Of the place on a lamp.
 const POINT: u64 = 3;
-/// Of the place on the lens that a lamp's point is joined with.
-const JOINED: u64 = 1;
 
-/// In place of a bounce's number, beyond all of them.
-const CANDIDATES: usize = 1 << 16;
+// Groups beyond those of all bounces.
+const CANDIDATES: u64 = 1 << 16;
+/// The first of those of the places on the lens that the points of a light path are joined with.
+const JOINED: u64 = 1 << 16;
 
 /// The numbers of one bounce.
 pub(crate) struct Bounce {
@@ -52,31 +52,34 @@ impl Needs {
 
 /// A walk's numbers.
 pub(crate) trait Bounces {
+    /// The group of the first bounce.
+    const FIRST: u64;
+
     /// The stream of all.
     fn stream(&mut self) -> &mut SampleStream;
 
-    /// The numbers of a slot of the walk's start (0), or of the bounce at the surface vertex of that index (from 1).
     #[inline]
-    fn draw(&mut self, bounce: usize, slot: u64) -> [f32; 2] {
-        self.stream().seek(bounce as u64 * SLOTS + slot).next_2d()
+    fn draw(&mut self, group: u64, slot: u64) -> [f32; 2] {
+        self.stream().seek(group * GROUP + slot).next_2d()
     }
 
     #[inline]
-    fn draw_if(&mut self, needed: bool, bounce: usize, slot: u64) -> [f32; 2] {
-        if needed { self.draw(bounce, slot) } else { [0.0; 2] }
+    fn draw_if(&mut self, needed: bool, group: u64, slot: u64) -> [f32; 2] {
+        if needed { self.draw(group, slot) } else { [0.0; 2] }
     }
 
     /// Those of the bounce at the surface vertex of that index (from 0), as far as the BSDF there and roulette need
     /// them.
     #[inline]
     fn bounce(&mut self, vertex: usize, bsdf: &Bsdf, roulette: bool) -> Bounce {
-        let [u0, u1] = self.draw_if(!bsdf.is_delta(), vertex + 1, BOUNCE);
-        let [u2, survival] = self.draw_if(roulette || bsdf.has_lobes(), vertex + 1, LOBE);
+        let group = Self::FIRST + vertex as u64;
+        let [u0, u1] = self.draw_if(!bsdf.is_delta(), group, BOUNCE);
+        let [u2, survival] = self.draw_if(roulette || bsdf.has_lobes(), group, LOBE);
         Bounce { u: [u0, u1, u2], survival }
     }
 }
 
-/// The numbers of a sample's eye path.
+/// The numbers of a sample's eye path: a group for the start, and one for each bounce.
 pub(crate) struct EyeNumbers {
     stream: SampleStream,
     needs: Needs,
@@ -99,13 +102,14 @@ impl EyeNumbers {
 
     /// Of a direction at the first surface vertex.
     pub fn direction(&mut self) -> [f32; 2] {
-        self.draw(1, BOUNCE)
+        self.draw(Self::FIRST, BOUNCE)
     }
 
     /// Of next-event estimation at the surface vertex of that index: the choice of the lamp, the place on it.
     #[inline]
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
-        (self.draw_if(self.needs.choice, vertex, CHOICE), self.draw(vertex, POINT))
+        let group = vertex as u64;
+        (self.draw_if(self.needs.choice, group, CHOICE), self.draw(group, POINT))
     }
 
     /// Of roulette among what the path can be joined with.
@@ -115,13 +119,15 @@ impl EyeNumbers {
 }
 
 impl Bounces for EyeNumbers {
+    const FIRST: u64 = 1;
+
     #[inline]
     fn stream(&mut self) -> &mut SampleStream {
         &mut self.stream
     }
 }
 
-/// The numbers of a sample's light path.
+/// The numbers of a sample's light path: a group for the lamp's point, one for the direction, one for each bounce.
 pub(crate) struct LightNumbers {
     stream: SampleStream,
     needs: Needs,
@@ -134,23 +140,24 @@ impl LightNumbers {
 
     /// Of the emission: the choice of the lamp, the place on it, the direction.
     pub fn emission(&mut self) -> [[f32; 2]; 3] {
-        [self.draw_if(self.needs.choice, 0, CHOICE), self.draw(0, POINT), self.draw(0, LAMP_DIRECTION)]
+        [self.draw_if(self.needs.choice, 0, CHOICE), self.draw(0, POINT), self.draw(1, BOUNCE)]
     }
 
     /// Of the place on the lens that the lamp's point is joined with.
     pub fn lamp_lens(&mut self) -> [f32; 2] {
-        self.draw_if(self.needs.lens, 0, JOINED)
+        self.draw_if(self.needs.lens, JOINED, LENS)
     }
 
     /// Of the place on the lens that the surface vertex of that index is joined with.
     #[inline]
     pub fn lens(&mut self, vertex: usize) -> [f32; 2] {
-        // The slot of a light path's next events, which there are none of.
-        self.draw_if(self.needs.lens, vertex + 1, POINT)
+        self.draw_if(self.needs.lens, JOINED + 1 + vertex as u64, LENS)
     }
 }
 
 impl Bounces for LightNumbers {
+    const FIRST: u64 = 2;
+
     #[inline]
     fn stream(&mut self) -> &mut SampleStream {
         &mut self.stream

@@ -13,6 +13,10 @@ use crate::numbers::Bounces;
 use crate::sink::Sink;
 use crate::vertex::Vertex;
 
+/// Roulette spares paths whose throughput is above 1/`LIVES`. Of 1, 2, 4 and 8, relMSE times instructions was least
+/// at 4 in a plain box (by a sixth less than at 1), and near the least among mirrors and glass.
+const LIVES: f32 = 4.0;
+
 /// How the eye path came to where it is, for weighing what it hits.
 enum Arrival {
     /// From the camera, or by a Dirac lobe: next-event estimation could not have made this path.
@@ -83,8 +87,8 @@ impl Kernel<'_> {
                 Arrival::Sampled { from: vertex.point.position, pdf: s.forward.0 }
             };
             if roulette {
-                // Nori's rule: the throughput without the radiance scale of refraction, at most 0.99.
-                let survival = (throughput.max_lane() / radiance_scale).min(0.99);
+                // The throughput without the radiance scale of refraction.
+                let survival = (LIVES * throughput.max_lane() / radiance_scale).min(0.99);
                 if bounce.survival >= survival {
                     break;
                 }
