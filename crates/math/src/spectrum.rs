@@ -4,6 +4,8 @@ use std::ops::{Add, AddAssign, Div, Index, Mul, MulAssign, Sub};
 
 use serde::{Deserialize, Serialize};
 
+use crate::vector::larger;
+
 /// A linear RGB triple with the primaries of ITU-R BT.709: the colours of descriptions and films.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -91,10 +93,10 @@ impl Spectrum {
         self.0 == [0.0; 4]
     }
 
-    /// The largest lane.
+    /// The largest lane, if none is NaN.
     #[inline]
     pub fn max_lane(self) -> f32 {
-        self.0[0].max(self.0[1]).max(self.0[2].max(self.0[3]))
+        larger(larger(self.0[0], self.0[1]), larger(self.0[2], self.0[3]))
     }
 
     /// Whether all lanes are finite and none is negative.

@@ -81,7 +81,8 @@ impl Strata {
         let [px, py] = pixel_part(owen(turned, of_pixel as u32 ^ (of_slot >> 32) as u32));
         let x = owen(sx ^ px, of_slot as u32);
         let y = owen(sy ^ py, (of_slot >> 32) as u32);
-        [x.reverse_bits(), y.reverse_bits()]
+        let reversed = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
+        [(reversed & 0xffff_ffff) as u32, (reversed >> 32) as u32]
     }
 
     #[inline]
@@ -103,8 +104,12 @@ fn turned(pixel: u32) -> u32 {
 fn sample_part(sample: u32, shuffled: u32, member: usize) -> [u32; 2] {
     let [high, low] = &ORDERS[member];
     let both = low[(shuffled >> 24) as usize] ^ high[(shuffled >> 16 & 0xff) as usize];
+    let [x, y] = [both & 0xffff, both >> 16];
+    if sample >> SHUFFLED == 0 {
+        return [x, y];
+    }
     let kept = sample >> SHUFFLED << SHUFFLED;
-    [both & 0xffff ^ kept, both >> 16 ^ pascal(kept)]
+    [x ^ kept, y ^ pascal(kept)]
 }
 
 /// Columns of the maps of a group's members: upper triangular with ones on the diagonal, found by random search

@@ -3,7 +3,6 @@
 //! A stream is a pure function of (seed, pixel, sample, walk, dimension): no generator state survives
 //! a sample, so any sample can be made again, alone, in any order and on any machine.
 
-use crate::ONE_BELOW;
 pub use crate::strata::GROUP;
 use crate::strata::Strata;
 
@@ -119,10 +118,10 @@ impl SampleStream {
     }
 }
 
-/// 24 random bits to [0, 1).
+/// 24 random bits to [0, 1): exactly, the largest to [`ONE_BELOW`](crate::ONE_BELOW).
 #[inline]
 fn to_unit(bits: u32) -> f32 {
-    (bits as f32 * (1.0 / 16_777_216.0)).min(ONE_BELOW)
+    bits as i32 as f32 * (1.0 / 16_777_216.0)
 }
 
 #[cfg(test)]

@@ -58,6 +58,12 @@ pub struct Vec3 {
     pub z: f32,
 }
 
+/// The larger of two numbers, or the second if either is NaN: one instruction, where the library's has four.
+#[inline]
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 impl Vec3 {
     /// The origin.
     pub const ZERO: Self = Self::new(0.0, 0.0, 0.0);
@@ -120,16 +126,17 @@ impl Vec3 {
             .then(|| Self::new((x / length) as f32, (y / length) as f32, (z / length) as f32))
     }
 
-    /// Coordinate by coordinate minimum.
+    /// Coordinate by coordinate minimum; that of `o` where either is NaN.
     #[inline]
     pub fn min(self, o: Self) -> Self {
-        Self::new(self.x.min(o.x), self.y.min(o.y), self.z.min(o.z))
+        let min = |a, b| if a < b { a } else { b };
+        Self::new(min(self.x, o.x), min(self.y, o.y), min(self.z, o.z))
     }
 
-    /// Coordinate by coordinate maximum.
+    /// Coordinate by coordinate maximum; that of `o` where either is NaN.
     #[inline]
     pub fn max(self, o: Self) -> Self {
-        Self::new(self.x.max(o.x), self.y.max(o.y), self.z.max(o.z))
+        Self::new(larger(self.x, o.x), larger(self.y, o.y), larger(self.z, o.z))
     }
 
     /// Coordinate by coordinate absolute value.
@@ -138,10 +145,10 @@ impl Vec3 {
         Self::new(self.x.abs(), self.y.abs(), self.z.abs())
     }
 
-    /// The largest coordinate.
+    /// The largest coordinate, if none is NaN.
     #[inline]
     pub fn max_element(self) -> f32 {
-        self.x.max(self.y).max(self.z)
+        larger(larger(self.x, self.y), self.z)
     }
 
     /// Whether no coordinate is NaN or infinite.

@@ -205,8 +205,8 @@ impl Kernel<'_> {
 #[inline]
 fn survives(flight: &mut Flight, first_throughput: f32, u: f32) -> bool {
     let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
-    let survival = left.min(MAX_SURVIVAL);
+    // A NaN stays, fails the comparison and ends the walk.
+    let survival = if left > MAX_SURVIVAL { MAX_SURVIVAL } else { left };
     flight.throughput *= 1.0 / survival;
-    // A NaN fails the comparison and ends the walk.
     u < survival
 }
