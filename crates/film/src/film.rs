@@ -122,6 +122,18 @@ impl Film {
         }
     }
 
+    /// What [`Film::add_eye`] would add, in quanta; `None` if nothing.
+    pub fn quanta(&self, pixel: [u32; 2], value: Rgb) -> Option<[i64; 3]> {
+        (self.layout.window.index(pixel).is_some() && is_finite(value)).then(|| self.count(pixel, value))
+    }
+
+    /// Adds quanta to the eye image at a pixel of the full picture. Outside of the window: nothing.
+    pub fn add_eye_quanta(&self, pixel: [u32; 2], quanta: [i64; 3]) {
+        if let Some(index) = self.layout.window.index(pixel) {
+            self.add_counts_to(index, EYE, quanta);
+        }
+    }
+
     /// Adds to the light image around `position`, in pixels of the full picture: pixel (i, j) covers
     /// [i, i + 1) × [j, j + 1).
     ///

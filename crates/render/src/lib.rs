@@ -3,10 +3,13 @@
 
 pub mod info;
 mod names;
+pub mod pyramid;
 mod queue;
 pub mod replay;
 pub mod scene_tests;
 mod session;
+mod workers;
 
 pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};
 pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session};
+pub use workers::Budget;

@@ -1,5 +1,4 @@
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 use caustica_film::{Film, FilmError, FilmLayout, LightBuffer, Metadata, Window};
@@ -10,7 +9,7 @@ use caustica_transport::{Heuristic, Kernel, Scratch, Settings, Sink};
 use serde::Serialize;
 
 use crate::names::integrator_name;
-use crate::queue::Queue;
+use crate::workers::{Budget, Units, Workers, pixels};
 
 /// What a session renders, and for how long.
 #[derive(Clone, Debug)]
@@ -106,17 +105,8 @@ pub struct Session<'a> {
     options: RenderOptions,
 }
 
-/// Edge of a tile in pixels: small enough to share out evenly, large enough to keep caches warm.
-const TILE: u32 = 16;
-
 /// Threads get buffers of their own for splats while all of them together take no more bytes than this.
 const MOST_BUFFERED: u64 = 128 << 20;
-
-/// How often progress is told.
-const TICK: Duration = Duration::from_millis(100);
-
-/// The shortest wait for the end of the time, or of a pass that outlasts it.
-const SHORTEST_TICK: Duration = Duration::from_millis(5);
 
 impl<'a> Session<'a> {
     /// A session with an empty film.
@@ -160,6 +150,15 @@ impl<'a> Session<'a> {
         m
     }
 
+    /// Renders for as long as the options say: see [`Session::run_for`].
+    ///
+    /// # Errors
+    /// If no worker thread can be started.
+    pub fn run(&self, control: &Control, progress: impl FnMut(&Progress)) -> Result<Report, RenderError> {
+        let RenderOptions { samples, time, .. } = self.options;
+        self.run_for(Budget { samples, time }, control, progress)
+    }
+
     /// Renders until the samples or the time are used up, or `control` says stop; only whole passes of one
     /// sample a pixel are counted, and the time is enough for one at least. What is in the film already
     /// counts: a session that was stopped goes on where it was. `progress` is called about ten times a second,
@@ -167,46 +166,24 @@ impl<'a> Session<'a> {
     ///
     /// # Errors
     /// If no worker thread can be started.
-    pub fn run(&self, control: &Control, mut progress: impl FnMut(&Progress)) -> Result<Report, RenderError> {
+    pub fn run_for(
+        &self,
+        budget: Budget,
+        control: &Control,
+        progress: impl FnMut(&Progress),
+    ) -> Result<Report, RenderError> {
         let start = Instant::now();
-        let tiles = self.tiles();
-        let first = self.samples();
-        let queue = Queue::new(tiles.len() as u64, first, u64::from(self.options.samples));
+        let window = self.film.layout().window;
         let threads = self.options.threads.unwrap_or_else(available_threads).max(1);
-        let per_thread = LightBuffer::memory(self.film.layout().window.pixels());
+        let per_thread = LightBuffer::memory(window.pixels());
         let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;
-        let (sender, receiver) = mpsc::channel::<()>();
-        std::thread::scope(|scope| {
-            for i in 0..threads {
-                let sender = sender.clone();
-                let (queue, tiles) = (&queue, &tiles);
-                let worker = std::thread::Builder::new().name(format!("render {i}"));
-                let spawned = worker.spawn_scoped(scope, move || {
-                    self.work(queue, tiles, buffered);
-                    drop(sender);
-                });
-                if let Err(e) = spawned {
-                    queue.stop();
-                    return Err(RenderError::Threads(e));
-                }
-            }
-            drop(sender);
-            // The channel closes when all workers are done.
-            while receiver.recv_timeout(self.tick(start)) == Err(RecvTimeoutError::Timeout) {
-                let late = self.options.time.is_some_and(|t| start.elapsed() >= t);
-                if control.is_stopped() || (late && queue.has_begun()) {
-                    queue.stop();
-                }
-                progress(&self.progress(&queue, start));
-            }
-            Ok(())
-        })?;
-        progress(&self.progress(&queue, start));
-        let samples = queue.progress().passes as u64 - first;
-        let eye = if self.options.settings.integrator == Integrator::Light { 0 } else { samples };
-        let light = if self.kernel.has_light_image() { samples } else { 0 };
+        let workers = Workers { window, first: self.samples(), budget, threads, control };
+        let added = workers.run(|units| self.work(units, buffered), progress)?;
+        let eye = if self.options.settings.integrator == Integrator::Light { 0 } else { added };
+        let light = if self.kernel.has_light_image() { added } else { 0 };
         self.film.finish_samples(eye, light);
-        Ok(self.report(samples, start.elapsed(), (threads, control)))
+        let stopped = control.is_stopped() && self.samples() < u64::from(budget.samples);
+        Ok(Report { stopped, ..self.report(added, start.elapsed(), threads) })
     }
 
     /// Samples per pixel in the film.
@@ -214,21 +191,14 @@ impl<'a> Session<'a> {
         self.film.eye_samples().max(self.film.light_samples())
     }
 
-    /// How long to wait before looking at the time again.
-    fn tick(&self, start: Instant) -> Duration {
-        let left = self.options.time.map(|t| t.saturating_sub(start.elapsed())).unwrap_or(TICK);
-        left.clamp(SHORTEST_TICK, TICK)
-    }
-
-    /// The report on a run of `added` samples.
-    fn report(&self, added: u64, time: Duration, (threads, control): (usize, &Control)) -> Report {
+    /// The report on a run of `added` samples that was not stopped.
+    fn report(&self, added: u64, time: Duration, threads: usize) -> Report {
         let seconds = time.as_secs_f64();
         let pixels = self.film.layout().window.pixels() as f64;
-        let samples = self.samples();
         Report {
             integrator: integrator_name(&self.options.settings.integrator),
-            samples,
-            stopped: control.is_stopped() && samples < u64::from(self.options.samples),
+            samples: self.samples(),
+            stopped: false,
             seconds,
             samples_per_second: added as f64 * pixels / seconds.max(1e-9),
             threads,
@@ -238,51 +208,16 @@ impl<'a> Session<'a> {
         }
     }
 
-    fn progress(&self, queue: &Queue, start: Instant) -> Progress {
-        let passes = queue.progress();
-        let elapsed = start.elapsed();
-        let by_time = self.options.time.map_or(0.0, |t| elapsed.as_secs_f64() / t.as_secs_f64().max(1e-9));
-        let pixels = self.film.layout().window.pixels() as f64;
-        Progress {
-            samples: passes.passes,
-            total: self.options.samples,
-            fraction: passes.fraction.max(by_time).min(1.0),
-            elapsed,
-            rate: passes.added * pixels / elapsed.as_secs_f64().max(1e-9),
-        }
-    }
-
-    /// The tiles of a pass.
-    fn tiles(&self) -> Vec<Window> {
-        let w = self.film.layout().window;
-        let steps = |start: u32, size: u32| (start..start + size).step_by(TILE as usize);
-        steps(w.y, w.height)
-            .flat_map(|y| {
-                steps(w.x, w.width).map(move |x| Window {
-                    x,
-                    y,
-                    width: TILE.min(w.x + w.width - x),
-                    height: TILE.min(w.y + w.height - y),
-                })
-            })
-            .collect()
-    }
-
     /// Renders units until there are none left. `buffered` is whether splats are gathered apart.
-    fn work(&self, queue: &Queue, tiles: &[Window], buffered: bool) {
+    fn work(&self, units: Units<'_>, buffered: bool) {
         let mut scratch = Scratch::default();
         let mut buffer = if buffered { self.film.light_buffer() } else { None };
-        let mut finished = false;
-        while let Some((pass, unit)) = queue.next(finished) {
-            let tile = tiles[unit as usize];
-            for y in tile.y..tile.y + tile.height {
-                for x in tile.x..tile.x + tile.width {
-                    let (film, kernel) = (&self.film, &self.kernel);
-                    let mut sink = FilmSink { film, kernel, buffer: buffer.as_mut(), pixel: [x, y] };
-                    self.kernel.sample([x, y], pass as u32, &mut scratch, &mut sink);
-                }
+        for (pass, tile) in units {
+            for pixel in pixels(tile) {
+                let (film, kernel) = (&self.film, &self.kernel);
+                let mut sink = FilmSink { film, kernel, buffer: buffer.as_mut(), pixel };
+                self.kernel.sample(pixel, pass, &mut scratch, &mut sink);
             }
-            finished = true;
         }
         if let Some(buffer) = &mut buffer {
             self.film.flush(buffer);
@@ -335,7 +270,7 @@ pub(crate) fn available_threads() -> usize {
 
 /// The film's quantum: a power of two far below what the scene's lamps would give if their light were spread
 /// over its bounds, but large enough that the brightest lamp, seen directly, does not overflow in 2²⁷ samples.
-fn quantum_exponent(scene: &Scene, integrator: &Integrator) -> i32 {
+pub(crate) fn quantum_exponent(scene: &Scene, integrator: &Integrator) -> i32 {
     let lit = matches!(
         integrator,
         Integrator::Bdpt

@@ -1,7 +1,7 @@
 //! The kernel: a scene with the settings that it is rendered by.
 
 use caustica_math::filter::PixelFilter;
-use caustica_math::{SampleId, Sampler, Spectrum, Vec2, Wavelengths};
+use caustica_math::{Rgb, SampleId, Sampler, Spectrum, Vec2, Wavelengths};
 use caustica_scene::Scene;
 use caustica_scene::bvh::Ray;
 use caustica_scene::camera::CameraRay;
@@ -132,6 +132,11 @@ impl<'a> Kernel<'a> {
     /// The settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// The colour of a spectrum that the kernel's sinks get.
+    pub fn rgb(&self, value: Spectrum) -> Rgb {
+        self.wavelengths.rgb(value)
     }
 
     /// Whether the integrator splats into the light image.

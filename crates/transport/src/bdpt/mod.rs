@@ -30,6 +30,7 @@ struct Sample<'a> {
     emission: Option<Emission>,
     camera: CameraPoint,
     film: Vec2,
+    filter_weight: f32,
     /// Room for the exhaustive weights.
     densities: RefCell<&'a mut Vec<VertexDensities>>,
 }
@@ -99,7 +100,7 @@ impl Kernel<'_> {
         };
         let Scratch { eye, light, densities, candidates } = scratch;
         let densities = RefCell::new(densities);
-        let sample = Sample { eye, light, emission, camera: ray.point, film, densities };
+        let sample = Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities };
         let mut sum = Spectrum::ZERO;
         if classes.hit {
             sum += self.hits(&sample, sink);
@@ -162,6 +163,7 @@ impl Kernel<'_> {
             unweighted: joined.value,
             weight,
             film: joined.film,
+            filter_weight: if t == 1 { 1.0 } else { sample.filter_weight },
             path: PathView {
                 lamp: joined.lamp,
                 light: &sample.light.vertices[..s.saturating_sub(1)],

@@ -1,0 +1,136 @@
+//! Worker threads that share out a film's tiles, pass after pass.
+
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
+
+use caustica_film::Window;
+
+use crate::queue::Queue;
+use crate::session::{Control, Progress, RenderError};
+
+/// Edge of a tile in pixels: small enough to share out evenly, large enough to keep caches warm.
+const TILE: u32 = 16;
+
+/// How often progress is told.
+const TICK: Duration = Duration::from_millis(100);
+
+/// The shortest wait for the end of the time, or of a pass that outlasts it.
+const SHORTEST_TICK: Duration = Duration::from_millis(5);
+
+/// For how long to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Samples per pixel that the film has at the end, at most.
+    pub samples: u32,
+    /// Stops with the pass that runs when this is over.
+    pub time: Option<Duration>,
+}
+
+/// Work on the passes of a window.
+pub(crate) struct Workers<'a> {
+    pub window: Window,
+    /// Passes that are done already.
+    pub first: u64,
+    pub budget: Budget,
+    pub threads: usize,
+    pub control: &'a Control,
+}
+
+/// The units that one worker gets: a pass and a tile of it.
+pub(crate) struct Units<'a> {
+    queue: &'a Queue,
+    tiles: &'a [Window],
+    finished: bool,
+}
+
+impl Iterator for Units<'_> {
+    type Item = (u32, Window);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let (pass, unit) = self.queue.next(self.finished)?;
+        self.finished = true;
+        Some((pass as u32, self.tiles[unit as usize]))
+    }
+}
+
+impl Workers<'_> {
+    /// Runs `work` on every thread until the samples or the time are used up, or the control says stop. Only whole
+    /// passes are done, and the time is enough for one at least. Returns how many passes were added. `progress` is
+    /// called about ten times a second, on this thread.
+    pub fn run(
+        &self,
+        work: impl Fn(Units<'_>) + Sync,
+        mut progress: impl FnMut(&Progress),
+    ) -> Result<u64, RenderError> {
+        let start = Instant::now();
+        let tiles = tiles(self.window);
+        let queue = Queue::new(tiles.len() as u64, self.first, u64::from(self.budget.samples));
+        let (sender, receiver) = mpsc::channel::<()>();
+        std::thread::scope(|scope| {
+            for i in 0..self.threads {
+                let sender = sender.clone();
+                let (queue, tiles, work) = (&queue, &tiles, &work);
+                let worker = std::thread::Builder::new().name(format!("render {i}"));
+                let spawned = worker.spawn_scoped(scope, move || {
+                    work(Units { queue, tiles, finished: false });
+                    drop(sender);
+                });
+                if let Err(e) = spawned {
+                    queue.stop();
+                    return Err(RenderError::Threads(e));
+                }
+            }
+            drop(sender);
+            // The channel closes when all workers are done.
+            while receiver.recv_timeout(self.tick(start)) == Err(RecvTimeoutError::Timeout) {
+                let late = self.budget.time.is_some_and(|t| start.elapsed() >= t);
+                if self.control.is_stopped() || (late && queue.has_begun()) {
+                    queue.stop();
+                }
+                progress(&self.progress(&queue, start));
+            }
+            Ok(())
+        })?;
+        progress(&self.progress(&queue, start));
+        Ok(queue.progress().passes as u64 - self.first)
+    }
+
+    /// How long to wait before looking at the time again.
+    fn tick(&self, start: Instant) -> Duration {
+        let left = self.budget.time.map(|t| t.saturating_sub(start.elapsed())).unwrap_or(TICK);
+        left.clamp(SHORTEST_TICK, TICK)
+    }
+
+    fn progress(&self, queue: &Queue, start: Instant) -> Progress {
+        let passes = queue.progress();
+        let elapsed = start.elapsed();
+        let by_time = self.budget.time.map_or(0.0, |t| elapsed.as_secs_f64() / t.as_secs_f64().max(1e-9));
+        Progress {
+            samples: passes.passes,
+            total: self.budget.samples,
+            fraction: passes.fraction.max(by_time).min(1.0),
+            elapsed,
+            rate: passes.added * self.window.pixels() as f64 / elapsed.as_secs_f64().max(1e-9),
+        }
+    }
+}
+
+/// The tiles of a pass.
+fn tiles(w: Window) -> Vec<Window> {
+    let steps = |start: u32, size: u32| (start..start + size).step_by(TILE as usize);
+    steps(w.y, w.height)
+        .flat_map(|y| {
+            steps(w.x, w.width).map(move |x| Window {
+                x,
+                y,
+                width: TILE.min(w.x + w.width - x),
+                height: TILE.min(w.y + w.height - y),
+            })
+        })
+        .collect()
+}
+
+/// The pixels of a tile.
+pub(crate) fn pixels(tile: Window) -> impl Iterator<Item = [u32; 2]> {
+    (tile.y..tile.y + tile.height).flat_map(move |y| (tile.x..tile.x + tile.width).map(move |x| [x, y]))
+}
