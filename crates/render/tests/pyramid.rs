@@ -40,6 +40,22 @@ fn weighted_strategies_add_up_to_the_picture_to_the_bit() {
     }
 }
 
+/// Weights lie between 0 and 1: up to rounding, no strategy's weighted light is negative, or more than without weights.
+#[test]
+fn weights_only_lessen() {
+    let scene = scene(open_box());
+    let samples = 6;
+    let pyramid = Pyramid::new(&scene, options(samples), 4).unwrap();
+    pyramid.run(&Control::default(), |_| ()).unwrap();
+    for layer in pyramid.layers() {
+        for (w, u) in sums(&layer.weighted).into_iter().zip(sums(&layer.unweighted)) {
+            // Rounding, and the remainder of every other strategy's.
+            let off = 20 * i64::from(samples) + u / 100_000;
+            assert!(-off <= w && w <= u + off, "{}: {w} of {u}", layer.strategy);
+        }
+    }
+}
+
 /// Only strategies with t = 1 are in the light image, and those with t ≥ 2 in the eye image.
 #[test]
 fn strategies_keep_to_their_image() {
