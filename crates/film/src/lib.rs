@@ -19,7 +19,7 @@ pub use display::{Develop, write_png};
 pub use error::FilmError;
 pub use film::{Film, FilmCounts, LightBuffer};
 pub use layout::{FilmLayout, Window};
-pub use openexr::{Metadata, read_exr, write_exr};
+pub use openexr::{Metadata, read_exr, write_exr, write_layers};
 pub use output::check_writable;
 pub use picture::{LightImage, Picture};
 pub use tonemap::{ToneMap, to_display};

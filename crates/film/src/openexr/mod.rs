@@ -10,7 +10,7 @@ mod write;
 use std::collections::BTreeMap;
 
 pub use read::read_exr;
-pub use write::write_exr;
+pub use write::{write_exr, write_layers};
 
 /// What the names of our attributes begin with.
 const PREFIX: &str = "caustica.";

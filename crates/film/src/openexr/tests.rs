@@ -195,3 +195,26 @@ fn names_and_sizes_are_checked_before_writing() {
     let error = write_exr(&nowhere, &picture(), LightImage::On, &Metadata::new()).unwrap_err();
     assert!(error.to_string().contains("no-such-folder"), "{error}");
 }
+
+/// Any layers, read back channel by channel.
+#[test]
+fn layers_have_names() {
+    use exr::prelude::*;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("layers.exr");
+    let window = Window { x: 1, y: 2, width: 2, height: 1 };
+    let [a, b] = [[Rgb::new(0.25, 1.0, 2.0), Rgb::WHITE], [Rgb::BLACK, Rgb::splat(-3.0)]];
+    let mut facts = Metadata::new();
+    facts.set("edges", 4);
+    let layers: [(&str, &[Rgb]); 2] = [("s0t2", &a), ("combined", &b)];
+    write_layers(&path, [5, 4], window, (&layers, &facts)).unwrap();
+    let image = read_all_flat_layers_from_file(&path).unwrap();
+    let channels = &image.layer_data[0].channel_data.list;
+    let names: Vec<_> = channels.iter().map(|c| c.name.to_string()).collect();
+    assert_eq!(names, ["combined.B", "combined.G", "combined.R", "s0t2.B", "s0t2.G", "s0t2.R"]);
+    assert_eq!(channels[5].sample_data.values_as_f32().collect::<Vec<_>>(), [0.25, 1.0]);
+    for (name, pixels) in [("", &a[..]), ("two words", &a), ("short", &a[..1]), (&"n".repeat(254), &a)] {
+        assert!(write_layers(&path, [5, 4], window, (&[(name, pixels)], &facts)).is_err(), "{name}");
+    }
+    assert!(write_layers(&path, [2, 2], window, (&layers, &facts)).is_err());
+}

@@ -13,11 +13,15 @@ use exr::prelude::{
 };
 
 use super::{LIGHT_IMAGE, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
+use crate::layout::{Window, check_window};
 use crate::picture::{LightImage, Picture};
 use crate::{FilmError, output};
 
 /// The longest name of an attribute in the format, in bytes.
 const LONGEST_NAME: usize = 255;
+
+/// The longest name of a layer, in bytes: `.R` follows it.
+const LONGEST_LAYER: usize = LONGEST_NAME - 2;
 
 /// Writes a picture and what is known about it. The same picture and facts give the same bytes.
 pub fn write_exr(
@@ -31,7 +35,43 @@ pub fn write_exr(
     facts.set(SAMPLES, picture.eye_samples);
     facts.set(LIGHT_PASSES, picture.light_samples);
     facts.set(LIGHT_IMAGE, light_image);
-    let mut image = describe(picture, light_image);
+    let combined = picture.combined(light_image);
+    let layers = [("combined", combined.as_slice()), ("eye", &picture.eye), ("light", &picture.light)];
+    write(path, [picture.width, picture.height], picture.window, (&layers, &facts))
+}
+
+/// Writes layers of linear pixels by their names, each of which holds the window of a picture of that width and
+/// height, row by row. A layer's channels are `NAME.R`, `NAME.G` and `NAME.B`; `combined` is what programs that know
+/// one layer show. The same layers and facts give the same bytes.
+///
+/// # Errors
+/// Layers that do not fit the window, names that are empty or not plain ASCII, and what the system says.
+pub fn write_layers(
+    path: &Path,
+    size: [u32; 2],
+    window: Window,
+    (layers, metadata): (&[(&str, &[Rgb])], &Metadata),
+) -> Result<(), FilmError> {
+    check_window(size[0], size[1], window)?;
+    for (name, pixels) in layers {
+        if name.is_empty() || !name.bytes().all(|b| b.is_ascii_graphic()) || name.len() > LONGEST_LAYER {
+            return Err(FilmError::Layout(format!("`{name}` cannot be the name of a layer")));
+        }
+        if pixels.len() as u64 != window.pixels() {
+            let (n, expected) = (pixels.len(), window.pixels());
+            return Err(FilmError::Layout(format!("a layer of {n} pixels for a window of {expected}")));
+        }
+    }
+    write(path, size, window, (layers, metadata))
+}
+
+fn write(
+    path: &Path,
+    size: [u32; 2],
+    window: Window,
+    (layers, facts): (&[(&str, &[Rgb])], &Metadata),
+) -> Result<(), FilmError> {
+    let mut image = describe(size, window, layers);
     for (name, value) in facts.iter() {
         image.layer_data.attributes.other.insert(attribute_name(name)?, text(value));
     }
@@ -60,11 +100,12 @@ fn attribute_name(name: &str) -> Result<Text, FilmError> {
     Ok(Text::from_slice_unchecked(full.as_bytes()))
 }
 
-/// The picture in the terms of the format.
-fn describe(picture: &Picture, light_image: LightImage) -> Image<Layer<AnyChannels<FlatSamples>>> {
-    let window = picture.window;
-    let combined = picture.combined(light_image);
-    let layers = [("combined", combined.as_slice()), ("eye", &picture.eye), ("light", &picture.light)];
+/// The layers in the terms of the format.
+fn describe(
+    [width, height]: [u32; 2],
+    window: Window,
+    layers: &[(&str, &[Rgb])],
+) -> Image<Layer<AnyChannels<FlatSamples>>> {
     let mut channels = SmallVec::new();
     for (layer, pixels) in layers {
         for (index, channel) in ["R", "G", "B"].into_iter().enumerate() {
@@ -86,7 +127,7 @@ fn describe(picture: &Picture, light_image: LightImage) -> Image<Layer<AnyChanne
         encoding,
         AnyChannels::sort(channels),
     );
-    let full = IntegerBounds::from_dimensions((picture.width as usize, picture.height as usize));
+    let full = IntegerBounds::from_dimensions((width as usize, height as usize));
     Image::new(ImageAttributes { chromaticities: Some(bt709()), ..ImageAttributes::new(full) }, layer)
 }
 
