@@ -176,6 +176,24 @@ fn hdr_of_one_exposure_is_ldr_of_what_is_shown() {
 }
 
 #[test]
+fn only_hdr_minds_which_is_the_reference() {
+    let (a, b) = (room(48, 32, 16.0).speckled(0.5, 2), night(48, 32));
+    assert_eq!(ldr_of(&a, &b), ldr_of(&b, &a));
+    assert_ne!(hdr_of(&a, &b).exposures, hdr_of(&b, &a).exposures);
+}
+
+#[test]
+fn negative_light_counts_as_none() {
+    let reference = room(48, 32, 16.0);
+    let dark =
+        Picture::new(48, 32, |x, y| if x < y { Rgb::BLACK } else { reference.pixels[(y * 48 + x) as usize] });
+    let negative = dark.map(|c| if c == 0.0 { -3.0 } else { c });
+    assert_eq!(ldr_of(&negative, &reference), ldr_of(&dark, &reference));
+    assert_eq!(hdr_of(&negative, &reference), hdr_of(&dark, &reference));
+    assert!(errors_of(&negative, &reference).rel_mse > errors_of(&dark, &reference).rel_mse);
+}
+
+#[test]
 fn more_noise_is_seen_more() {
     let reference = room(96, 64, 16.0);
     let seen =
