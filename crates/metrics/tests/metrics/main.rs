@@ -1,0 +1,5 @@
+//! Metrics of pictures that come from formulas.
+
+mod pictures;
+mod properties;
+mod published;
