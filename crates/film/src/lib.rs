@@ -20,6 +20,6 @@ pub use error::FilmError;
 pub use film::{Film, FilmCounts, LightBuffer};
 pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr, write_layers};
-pub use output::check_writable;
+pub use output::{check_writable, write_file};
 pub use picture::{LightImage, Picture};
 pub use tonemap::{ToneMap, to_display};

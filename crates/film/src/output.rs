@@ -1,7 +1,7 @@
 //! Files that are replaced whole or not at all.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -12,6 +12,12 @@ use crate::FilmError;
 /// left behind, and a file that is there stays as it is.
 pub fn check_writable(path: &Path) -> Result<(), FilmError> {
     temporary(&destination(path)?).map(drop)
+}
+
+/// Puts `bytes` in a file at `path`: under a temporary name first, so that whoever reads sees the old file
+/// or the new one.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
+    write_atomically(path, |file| file.write_all(bytes).map_err(|e| FilmError::io(path, e)))
 }
 
 /// Writes a file under a temporary name in its folder and then renames it, so that a reader sees the
@@ -60,8 +66,6 @@ fn temporary(target: &Path) -> Result<NamedTempFile, FilmError> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Write;
-
     use super::*;
 
     fn names(folder: &Path) -> Vec<String> {
@@ -72,7 +76,7 @@ mod tests {
     }
 
     fn put(path: &Path, text: &str) -> Result<(), FilmError> {
-        write_atomically(path, |f| f.write_all(text.as_bytes()).map_err(|e| FilmError::io(path, e)))
+        write_file(path, text.as_bytes())
     }
 
     #[test]

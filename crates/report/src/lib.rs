@@ -1,0 +1,18 @@
+//! Pages that show what was rendered, each in one file that opens from disk without a network.
+//!
+//! [`write_comparison`] puts images of one scene into one viewer with their errors, curves and details;
+//! [`write_pyramid`] shows what each strategy of a bidirectional path tracer adds to an image. The images
+//! are in the page as half floats, so that exposure can be chosen while looking.
+
+mod comparison;
+mod encode;
+mod error;
+mod page;
+mod pyramid;
+
+pub use comparison::{
+    Comparison, CurvePoint, Entry, Inset, Metrics, Shown, Speedup, comparison_json, comparison_page,
+    write_comparison,
+};
+pub use error::ReportError;
+pub use pyramid::{Pyramid, StrategyImages, pyramid_page, write_pyramid};
