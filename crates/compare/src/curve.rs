@@ -1,0 +1,87 @@
+//! Error against time.
+
+use libm::{exp, log};
+
+/// The error at one moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Seconds of rendering so far.
+    pub seconds: f64,
+    /// Samples per pixel so far.
+    pub samples: u64,
+    /// Mean of squared relative errors.
+    pub rel_mse: f64,
+    /// The same without the worst 0.1 % of pixels.
+    pub trimmed_rel_mse: f64,
+}
+
+/// Logarithms of time and error of the points that have both.
+fn logarithms(curve: &[Point]) -> Vec<[f64; 2]> {
+    let finite = |p: &&Point| p.seconds > 0.0 && p.rel_mse > 0.0 && p.rel_mse.is_finite();
+    curve.iter().filter(finite).map(|p| [log(p.seconds), log(p.rel_mse)]).collect()
+}
+
+/// The slope of log(relMSE) over log(seconds), by least squares: −1 for independent samples of finite variance.
+/// `None` for fewer than three points.
+pub fn slope(curve: &[Point]) -> Option<f64> {
+    let points = logarithms(curve);
+    if points.len() < 3 {
+        return None;
+    }
+    let n = points.len() as f64;
+    let mean = |i: usize| points.iter().map(|p| p[i]).sum::<f64>() / n;
+    let (x, y) = (mean(0), mean(1));
+    let product =
+        |i: usize, j: usize| points.iter().map(|p| (p[i] - [x, y][i]) * (p[j] - [x, y][j])).sum::<f64>();
+    let spread = product(0, 0);
+    (spread > 0.0).then(|| product(0, 1) / spread)
+}
+
+/// When the error had come down to `rel_mse`, in seconds: between points by a straight line in logarithms, before the
+/// first by relMSE ∝ 1/time. `None` if it never does.
+pub fn time_to_reach(curve: &[Point], rel_mse: f64) -> Option<f64> {
+    let points = logarithms(curve);
+    let target = log(rel_mse);
+    let first = points.first().filter(|_| target.is_finite())?;
+    if first[1] <= target {
+        return Some(exp(first[0] + first[1] - target));
+    }
+    points.windows(2).find(|w| w[1][1] <= target).map(|w| {
+        let [a, b] = [w[0], w[1]];
+        exp(a[0] + (b[0] - a[0]) * (target - a[1]) / (b[1] - a[1]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(points: &[(f64, f64)]) -> Vec<Point> {
+        let point = |&(seconds, rel_mse)| Point { seconds, samples: 1, rel_mse, trimmed_rel_mse: rel_mse };
+        points.iter().map(point).collect()
+    }
+
+    #[test]
+    fn slopes_are_those_of_the_logarithms() {
+        let halves = curve(&[(1.0, 0.4), (2.0, 0.2), (4.0, 0.1), (8.0, 0.05)]);
+        assert!((slope(&halves).unwrap() + 1.0).abs() < 1e-12);
+        let flat = curve(&[(1.0, 0.3), (2.0, 0.3), (9.0, 0.3), (10.0, f64::NAN)]);
+        assert!(slope(&flat).unwrap().abs() < 1e-12);
+        assert_eq!(slope(&halves[..2]), None);
+        assert_eq!(slope(&curve(&[(1.0, 0.1); 5])), None);
+    }
+
+    #[test]
+    fn times_lie_between_points() {
+        let c = curve(&[(1.0, 0.4), (4.0, 0.1)]);
+        let near = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
+        assert!(near(time_to_reach(&c, 0.2), 2.0) && near(time_to_reach(&c, 0.1), 4.0));
+        // Twice the error takes half the time.
+        assert!(near(time_to_reach(&c, 0.8), 0.5));
+        assert_eq!(time_to_reach(&c, 0.09), None);
+        assert_eq!(time_to_reach(&[], 0.1), None);
+        for odd in [0.0, f64::NAN, f64::INFINITY, -1.0] {
+            assert_eq!(time_to_reach(&c, odd), None);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Integrators compared: one scene by several methods, at equal time or equal samples, against a reference.
+//!
+//! [`compare`] renders, [`Outcome::page`] measures and makes what `caustica-report` shows.
+
+mod curve;
+mod insets;
+mod method;
+mod outcome;
+mod race;
+
+pub use curve::{Point, slope, time_to_reach};
+pub use insets::{Region, most_different};
+pub use method::{DEFAULT_METHODS, EYE_ONLY, Method};
+pub use outcome::{CompareError, Entrant, Outcome, Reference};
+pub use race::{Options, ReferenceChoice, Stage, compare};
