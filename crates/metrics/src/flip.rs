@@ -77,8 +77,8 @@ pub fn ldr(image: Image, reference: Image, options: &Options) -> Result<FlipMap,
     Ok(finish(observer.into_values(), image, None))
 }
 
-/// HDR-ꟻLIP of two pictures of any brightness: at each pixel the greatest LDR-ꟻLIP of all exposures. It takes
-/// as long as [`ldr`] for each of them, of which a usual render has 8 to 15.
+/// HDR-ꟻLIP of two pictures of any brightness: at each pixel the greatest LDR-ꟻLIP of all exposures. It
+/// takes as long as [`ldr`] for each of them.
 ///
 /// # Errors
 /// Those of [`ldr`] and of [`exposures`].
