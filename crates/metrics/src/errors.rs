@@ -16,15 +16,16 @@ const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// How far a picture is from its reference, over all pixels.
 ///
-/// A pixel with a channel that is infinite or not a number counts as infinitely wrong: it makes `rel_mse` and `rmse`
-/// infinite, and `trimmed_rel_mse` too unless it is among the pixels left out. Formats without infinities (JSON) show
-/// nothing there; `not_finite` tells why.
+/// A pixel with a channel that is infinite or not a number counts as infinitely wrong: it makes
+/// `rel_mse` and `rmse` infinite, and `trimmed_rel_mse` too unless it is among the pixels left out.
+/// Formats without infinities (JSON) show nothing there; `not_finite` tells why.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Errors {
-    /// The mean over pixels and channels of (x − r)² / (r² + ε), ε being 1 % of the reference's squared mean luminance.
-    /// It does not change if both pictures are scaled by the same number.
+    /// The mean over pixels and channels of (x − r)² / (r² + ε), ε being 1 % of the reference's squared
+    /// mean luminance. It does not change if both pictures are scaled by the same number.
     pub rel_mse: f64,
-    /// The same without the worst [`TRIMMED_SHARE`] of the pixels, their number rounded to the nearest, halves to even.
+    /// The same without the worst [`TRIMMED_SHARE`] of the pixels, their number rounded to the nearest,
+    /// halves to even.
     pub trimmed_rel_mse: f64,
     /// The square root of the mean over pixels and channels of (x − r)², in the pictures' unit.
     pub rmse: f64,
@@ -58,8 +59,8 @@ pub fn errors(image: Image, reference: Image) -> Result<Errors, MetricsError> {
     })
 }
 
-/// The squared relative error of each pixel, averaged over the channels, as [`Errors::rel_mse`] defines it; +∞ where the
-/// picture is not finite.
+/// The squared relative error of each pixel, averaged over the channels, as [`Errors::rel_mse`] defines
+/// it; +∞ where the picture is not finite.
 ///
 /// # Errors
 /// Those of [`errors`].

@@ -1,14 +1,16 @@
 //! ꟻLIP: the difference that an observer sees who flips between a picture and its reference.
 //!
-//! LDR-ꟻLIP is that of P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström and M. D. Fairchild, “ꟻLIP: A
-//! Difference Evaluator for Alternating Images”, High Performance Graphics 2020 ([`ldr`]). HDR-ꟻLIP is the greatest
-//! LDR-ꟻLIP over a range of exposures: P. Andersson, J. Nilsson, P. Shirley and T. Akenine-Möller, “Visualizing Errors in
-//! Rendered High Dynamic Range Images”, Eurographics 2021 ([`hdr`]).
+//! LDR-ꟻLIP is that of P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström and M. D.
+//! Fairchild, “ꟻLIP: A Difference Evaluator for Alternating Images”, High Performance Graphics 2020
+//! ([`ldr`]). HDR-ꟻLIP is the greatest LDR-ꟻLIP over a range of exposures: P. Andersson, J. Nilsson, P.
+//! Shirley and T. Akenine-Möller, “Visualizing Errors in Rendered High Dynamic Range Images”,
+//! Eurographics 2021 ([`hdr`]).
 //!
-//! Where the papers leave a choice, the evaluator that their authors publish is followed (version 1.7): beyond the edge a
-//! picture goes on as at the edge, and the median luminance, if zero, is taken to be that of a faint grey. The tests
-//! compare with it. Three things are our own: negative light counts as none, a pixel that is not finite is as wrong as can
-//! be (1) and black to its neighbours, and a reference fainter than the faint grey has one exposure instead of an error.
+//! Where the papers leave a choice, the evaluator that their authors publish is followed (version 1.7):
+//! beyond the edge a picture goes on as at the edge, and the median luminance, if zero, is taken to be
+//! that of a faint grey. The tests compare with it. Three things are our own: negative light counts as
+//! none, a pixel that is not finite is as wrong as can be (1) and black to its neighbours, and a
+//! reference fainter than the faint grey has one exposure instead of an error.
 
 mod colour;
 mod exposure;
@@ -75,7 +77,8 @@ pub fn ldr(image: Image, reference: Image, options: &Options) -> Result<FlipMap,
     Ok(finish(observer.into_values(), image, None))
 }
 
-/// HDR-ꟻLIP of two pictures of any brightness: at each pixel the greatest LDR-ꟻLIP of all exposures.
+/// HDR-ꟻLIP of two pictures of any brightness: at each pixel the greatest LDR-ꟻLIP of all exposures. It
+/// takes as long as [`ldr`] for each of them.
 ///
 /// # Errors
 /// Those of [`ldr`] and of [`exposures`].
@@ -89,9 +92,9 @@ pub fn hdr(image: Image, reference: Image, options: &Options) -> Result<FlipMap,
     Ok(finish(observer.into_values(), image, Some(exposures)))
 }
 
-/// The exposures at which [`hdr`] looks: those of `options`, and what they leave open by the reference. The first one
-/// brings the reference's greatest luminance to 85 % of white, the last one its median; there are as many as there are
-/// stops between them, rounded up, and at least two.
+/// The exposures at which [`hdr`] looks: those of `options`, and what they leave open by the reference.
+/// The first one brings the reference's greatest luminance to 85 % of white, the last one its median;
+/// there are as many as there are stops between them, rounded up, and at least two.
 ///
 /// # Errors
 /// [`MetricsError::BadReference`], [`MetricsError::BlackReference`] and [`MetricsError::Exposures`].

@@ -1,7 +1,7 @@
 //! Values as colours.
 
-/// Seventeen colours at equal distances, fitted by least squares to matplotlib's *magma* (Nathaniel Smith and Stéfan van
-/// der Walt, CC0), so that straight lines between them stay within 2 of 255 of it.
+/// Seventeen colours at equal distances, fitted by least squares to matplotlib's *magma* (Nathaniel
+/// Smith and Stéfan van der Walt, CC0), so that straight lines between them stay within 2 of 255 of it.
 const MAGMA: [[u8; 3]; 17] = [
     [0, 0, 2],
     [9, 8, 33],
@@ -22,8 +22,9 @@ const MAGMA: [[u8; 3]; 17] = [
     [252, 253, 191],
 ];
 
-/// The sRGB bytes of `value` in the palette *magma*: 0 is nearly black, then come purple and orange, and 1 is pale
-/// yellow. What lies outside of [0, 1] takes the nearer end, and NaN the colour of 1, so that it does not pass unseen.
+/// The sRGB bytes of `value` in the palette *magma*: 0 is nearly black, then come purple and orange, and
+/// 1 is pale yellow. What lies outside of [0, 1] takes the nearer end, and NaN the colour of 1, so that
+/// it does not pass unseen.
 pub fn heat(value: f32) -> [u8; 3] {
     let value = if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) };
     let place = value * (MAGMA.len() - 1) as f32;

@@ -78,7 +78,8 @@ impl<'a> Image<'a> {
     /// A picture of `width` × `height` pixels.
     ///
     /// # Errors
-    /// [`MetricsError::Empty`] for a side of zero, [`MetricsError::PixelCount`] for another number of `pixels`.
+    /// [`MetricsError::Empty`] for a side of zero, [`MetricsError::PixelCount`] for another number of
+    /// `pixels`.
     pub fn new(width: u32, height: u32, pixels: &'a [Rgb]) -> Result<Self, MetricsError> {
         if width == 0 || height == 0 {
             return Err(MetricsError::Empty { width, height });

@@ -1,8 +1,9 @@
 //! Colours as the eye compares them.
 //!
-//! ꟻLIP filters in the opponent space YCxCz (Flynn et al. 2003), which is linear in light: with tristimulus values x, y, z
-//! relative to white, Y = 116 y − 16, Cx = 500 (x − y) and Cz = 200 (y − z). Its filters keep constants as they are, so
-//! that y, x − y and y − z can be filtered instead, and the scales and the offset are not needed.
+//! ꟻLIP filters in the opponent space YCxCz (Flohr et al. 1993), which is linear in light: with
+//! tristimulus values x, y, z relative to white, Y = 116 y − 16, Cx = 500 (x − y) and Cz = 200 (y − z).
+//! Its filters keep constants as they are, so that y, x − y and y − z can be filtered instead, and the
+//! scales and the offset are not needed.
 
 /// From linear Rec. 709 light to tristimulus values relative to white (D65): each row adds up to one.
 const TO_TRISTIMULUS: [[f32; 3]; 3] = [
@@ -34,8 +35,8 @@ pub(super) fn opponents(light: [f32; 3]) -> [f32; 3] {
     [y, x - y, y - z]
 }
 
-/// Lightness and Hunt-adjusted chroma of opponent values: brought into the display's range, then CIELAB with a* and b*
-/// multiplied by L* / 100 (section 4.1.2 of the paper).
+/// Lightness and Hunt-adjusted chroma of opponent values: brought into the display's range, then CIELAB
+/// with a* and b* multiplied by L* / 100 (the paper's colour pipeline).
 #[inline]
 pub(super) fn appearance([y, x_less_y, y_less_z]: [f32; 3]) -> [f32; 3] {
     let light = transform(&FROM_TRISTIMULUS, [y + x_less_y, y, y - y_less_z]).map(|c| c.clamp(0.0, 1.0));
@@ -66,7 +67,7 @@ impl ColourScale {
         Self { greatest: power_of_distance(of([0.0, 1.0, 0.0]), of([0.0, 0.0, 1.0])) }
     }
 
-    /// The difference of two appearances, from 0 to 1: large ones, which are rare, are squeezed (section 4.1.3).
+    /// The difference of two appearances, from 0 to 1: large ones, which are rare, are squeezed.
     #[inline]
     pub(super) fn difference(self, a: [f32; 3], b: [f32; 3]) -> f32 {
         let (found, common) = (power_of_distance(a, b), COMMON_SHARE * self.greatest);

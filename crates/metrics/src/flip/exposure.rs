@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::visible;
 use crate::image::{Image, MetricsError};
 
-/// The most exposures that can be asked for; from the faintest to the brightest light that single precision knows there
-/// are fewer.
+/// The most exposures that can be asked for; from the faintest to the brightest light that single
+/// precision knows there are fewer.
 pub const MAX_EXPOSURES: u32 = 256;
 
 /// The part of white to which the curves bring the reference's maximum and median.
@@ -32,7 +32,7 @@ pub enum Curve {
     /// K. Narkowicz's fit (2015) of the filmic curve of ACES, as bright as the original.
     #[default]
     Aces,
-    /// J. Hable's curve of “Uncharted 2” (2010), white at 11.2.
+    /// J. Hable's curve of “Uncharted 2” (2010) for twice the light, white at 5.6.
     Hable,
     /// c / (1 + luminance), after E. Reinhard et al. (2002).
     Reinhard,
@@ -81,7 +81,8 @@ pub struct Exposures {
 }
 
 impl Exposures {
-    /// Exposures from `start` to `stop`: `count` of them, or one for each stop between them, but at least two.
+    /// Exposures from `start` to `stop`: `count` of them, or one for each stop between them, but at
+    /// least two.
     pub(super) fn new(start: f32, stop: f32, count: Option<u32>) -> Result<Self, MetricsError> {
         let count = count.unwrap_or_else(|| (stop - start).ceil().max(2.0) as u32);
         let fewest = if start == stop { 1 } else { 2 };
@@ -100,7 +101,7 @@ impl Exposures {
     }
 }
 
-/// The first and the last exposure for `reference` (section 3 of the HDR-ꟻLIP paper).
+/// The first and the last exposure for `reference`, as the HDR-ꟻLIP paper chooses them.
 pub(super) fn range(reference: Image, curve: Curve) -> Result<(f32, f32), MetricsError> {
     let mut brightness: Vec<f32> = reference.pixels().iter().map(|p| luminance(visible(*p))).collect();
     let middle = brightness.len() / 2;

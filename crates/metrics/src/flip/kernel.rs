@@ -4,8 +4,9 @@ use std::f64::consts::PI;
 
 use crate::image::MetricsError;
 
-/// Amplitude a and width b (in square degrees) of Gaussians a √(π/b) exp(−π² d²/b) in the distance d in degrees: the
-/// contrast sensitivity of the eye by channel (the paper's table 1, after Johnson and Fairchild).
+/// Amplitude a and width b (in square degrees) of Gaussians a √(π/b) exp(−π² d²/b) in the distance d in
+/// degrees: the contrast sensitivity of the eye by channel, as the paper's colour pipeline takes it from
+/// G. M. Johnson and M. D. Fairchild.
 const LIGHT_DARK: (f64, f64) = (1.0, 0.0047);
 const RED_GREEN: (f64, f64) = (1.0, 0.0053);
 const BLUE_YELLOW: [(f64, f64); 2] = [(34.1, 0.04), (13.5, 0.025)];
@@ -28,7 +29,8 @@ impl Kernel {
         Self { half: half.map(|w| w as f32).collect(), odd: false }
     }
 
-    /// Adds to `out` the filtered values of lines: `line(d)` holds what lies `d` pixels after each place of `out`.
+    /// Adds to `out` the filtered values of lines: `line(d)` holds what lies `d` pixels after each place
+    /// of `out`.
     #[inline]
     pub(super) fn add<'a>(&self, out: &mut [f32], line: impl Fn(isize) -> &'a [f32]) {
         if !self.odd {
@@ -81,8 +83,8 @@ impl Kernels {
     }
 }
 
-/// One filter for each Gaussian, for use both along rows and along columns, such that the sum of what they give keeps a
-/// constant.
+/// One filter for each Gaussian, for use both along rows and along columns, such that the sum of what
+/// they give keeps a constant.
 fn blurs<const N: usize>(terms: [(f64, f64); N], density: f64, radius: usize) -> [Kernel; N] {
     let at = |(a, b): (f64, f64), pixels: usize| {
         let degrees = pixels as f64 / density;
@@ -94,8 +96,9 @@ fn blurs<const N: usize>(terms: [(f64, f64); N], density: f64, radius: usize) ->
     terms.map(|term| Kernel::even((0..=radius).map(|d| at(term, d) / norm)))
 }
 
-/// A Gaussian of the standard deviation `deviation` in pixels that adds up to one, and its first and second derivative, of
-/// which the positive weights add up to one and the negative ones to minus one (section 4.2 of the paper).
+/// A Gaussian of the standard deviation `deviation` in pixels that adds up to one, and its first and
+/// second derivative, of which the positive weights add up to one and the negative ones to minus one
+/// (the paper's feature pipeline).
 fn features(deviation: f64) -> [Kernel; 3] {
     let reach = (3.0 * deviation).ceil() as usize;
     let squared = |d: usize| (d as f64 / deviation) * (d as f64 / deviation);

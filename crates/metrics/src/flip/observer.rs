@@ -11,12 +11,12 @@ use crate::image::{Image, MetricsError};
 /// The exponent of the feature difference (q_f in the paper) is one half.
 const FEATURE_SCALE: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
-/// Lines that a row has after filtering along it, in this order: light and dark, red and green, blue and yellow twice;
-/// edge, point and Gaussian.
+/// Lines that a row has after filtering along it, in this order: light and dark, red and green, blue and
+/// yellow twice; edge, point and Gaussian.
 const ALONG_ROWS: usize = 7;
 
-/// Lines that a row has after filtering along columns too: light and dark, red and green, blue and yellow; edge and point
-/// along the row, edge and point along the column.
+/// Lines that a row has after filtering along columns too: light and dark, red and green, blue and
+/// yellow; edge and point along the row, edge and point along the column.
 const ALONG_BOTH: usize = 7;
 
 /// An observer of an image and its reference, who remembers the greatest difference seen at each pixel.
@@ -132,7 +132,7 @@ fn filter_columns(lines: &mut [f32], rows: &[f32], y: usize, kernels: &Kernels) 
     }
 }
 
-/// ꟻLIP of a pixel: the colour difference, made greater where edges and points differ (equation 8 of the paper).
+/// ꟻLIP of a pixel: the colour difference, made greater where edges and points differ.
 #[inline]
 fn difference(a: [f32; ALONG_BOTH], b: [f32; ALONG_BOTH], scale: ColourScale) -> f32 {
     let length = |x: f32, y: f32| (x * x + y * y).sqrt();

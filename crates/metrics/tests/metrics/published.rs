@@ -1,13 +1,14 @@
-//! Figures of others for pictures that can be made again: ꟻLIP of the evaluator that its authors publish (version 1.7),
-//! and relative errors of `benches/peers`. `published.py` prints both tables.
+//! Figures of others for pictures that can be made again: ꟻLIP of the evaluator that its authors publish
+//! (version 1.7), and relative errors of `benches/peers`. `published.py` prints both tables.
 
 use crate::pictures::{Picture, checks, night, ramps, room};
 use caustica_math::Rgb;
 use caustica_metrics::flip::{self, Curve, Options};
 use caustica_metrics::{errors, relative_error_map};
 
-/// The evaluator reckons in single precision, so that it finds faint edges in flat pictures; the root that ꟻLIP takes of
-/// them makes a few millionths of what would be 10⁻⁷. Otherwise means agree to their six digits.
+/// The evaluator reckons in single precision, so that it finds faint edges in flat pictures; the root
+/// that ꟻLIP takes of them makes a few millionths of what would be 10⁻⁷. Otherwise means agree to their
+/// six digits.
 const MEAN_TOLERANCE: f64 = 1e-5;
 
 /// Single pixels agree about as well; their figures have five digits.
