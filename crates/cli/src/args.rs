@@ -1,12 +1,14 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use caustica::description::Crop;
+use caustica::Settings;
+use caustica::description::{Crop, Integrator};
 use caustica::film::ToneMap;
 use caustica::math::Sampler;
 use caustica::scene::bvh::TreeQuality;
 use caustica::session::INTEGRATOR_NAMES;
 use caustica::transport::{Heuristic, StrategySet};
+use caustica_compare::{DEFAULT_METHODS, EYE_ONLY};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// A bidirectional path tracer for scenes whose light is hard to find.
@@ -31,6 +33,10 @@ Exit codes:
 pub enum Command {
     /// Render a scene to an OpenEXR file and a PNG
     Render(Render),
+    /// Render a scene by several integrators, and make a page that compares them
+    Compare(Compare),
+    /// Render what each strategy of bdpt finds, as a pyramid of pictures by path length
+    Pyramid(Pyramid),
     /// Make a picture from a rendered OpenEXR file, with or without its light image
     Develop(Develop),
     /// Tell what a scene file holds
@@ -44,6 +50,8 @@ impl Arguments {
     pub fn voice(&self) -> (bool, bool) {
         match &self.command {
             Command::Render(a) => (a.json, a.quiet),
+            Command::Compare(a) => (a.json, a.quiet),
+            Command::Pyramid(a) => (a.json, a.quiet),
             Command::Info(a) => (a.json, false),
             Command::Test(a) => (a.json, false),
             Command::Develop(_) => (false, false),
@@ -51,21 +59,11 @@ impl Arguments {
     }
 }
 
+/// What is rendered, and on what.
 #[derive(Debug, Args)]
-pub struct Render {
+pub struct Source {
     /// Nori scene file; without it, the built-in scene of caustics is rendered
     pub scene: Option<PathBuf>,
-    /// Output files; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
-    #[arg(short, long)]
-    pub output: Option<PathBuf>,
-    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub spp: Option<u32>,
-    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
-    #[arg(long, value_parser = parse_duration)]
-    pub time: Option<Duration>,
-    #[command(flatten)]
-    pub method: Method,
     /// Size of the picture, such as 640x480 [default: as the scene says]
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<(u32, u32)>,
@@ -78,6 +76,23 @@ pub struct Render {
     /// How the tree that rays run through is built; the picture does not depend on it
     #[arg(long, value_enum, default_value_t = TreeChoice::Fast)]
     pub tree: TreeChoice,
+}
+
+#[derive(Debug, Args)]
+pub struct Render {
+    #[command(flatten)]
+    pub source: Source,
+    /// Output files; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
+    #[arg(long, value_parser = parse_duration)]
+    pub time: Option<Duration>,
+    #[command(flatten)]
+    pub method: Method,
     /// What becomes of the light image, which holds what light paths splat: most caustics
     #[arg(long, value_name = "CHOICE", value_enum, default_value_t = LightImageChoice::On)]
     pub light_image: LightImageChoice,
@@ -94,6 +109,68 @@ pub struct Render {
     pub json: bool,
 }
 
+#[derive(Debug, Args)]
+pub struct Compare {
+    #[command(flatten)]
+    pub source: Source,
+    /// Folder for the page `index.html`, `report.json` and the pictures [default: SCENE-compare beside the scene]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// How long each integrator renders: 90, 60s, 5m [default: 30s, unless --spp is given]
+    #[arg(long, value_parser = parse_duration, conflicts_with = "spp")]
+    pub time: Option<Duration>,
+    /// Samples per pixel of each integrator, in place of a time
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// OpenEXR picture of the same size to compare with
+    #[arg(long, value_name = "FILE", conflicts_with = "reference_time")]
+    pub reference: Option<PathBuf>,
+    /// How long to render the reference, by bdpt [default: ten times as long as each integrator]
+    #[arg(long, value_name = "TIME", value_parser = parse_duration)]
+    pub reference_time: Option<Duration>,
+    /// What to compare: integrators, and `bdpt-eye`, which is bdpt without its light image
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = method_names(),
+        hide_possible_values = true, default_values = DEFAULT_METHODS)]
+    pub integrators: Vec<String>,
+    #[command(flatten)]
+    pub sampling: Sampling,
+    /// Say nothing but errors: no progress bar, no warnings, no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print the result, warnings or the error as one JSON object on the standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Pyramid {
+    #[command(flatten)]
+    pub source: Source,
+    /// Output files: OUTPUT.png, OUTPUT-unweighted.png, OUTPUT.exr and OUTPUT.html are written
+    /// [default: SCENE-pyramid beside the scene]
+    #[arg(short, long)]
+    pub output: Option<PathBuf>,
+    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
+    #[arg(long, value_parser = parse_duration)]
+    pub time: Option<Duration>,
+    /// Rows: the most edges of paths whose strategies are shown. Longer paths are rendered, and added to the whole
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub rows: u32,
+    #[command(flatten)]
+    pub sampling: Sampling,
+    #[command(flatten)]
+    pub look: Look,
+    /// Say nothing but errors: no progress bar, no warnings, no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print the result, warnings or the error as one JSON object on the standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// How light is found.
 #[derive(Debug, Args)]
 pub struct Method {
@@ -101,6 +178,17 @@ pub struct Method {
     #[arg(long, value_name = "NAME", value_parser = integrator_names(), hide_possible_values = true,
         help = integrator_names_help(), long_help = integrator_help())]
     pub integrator: Option<String>,
+    /// Strategies (s, t) of bdpt, with s light and t camera vertices: `s=0`, `t>=2`, `2,3`, `s>=2&t>=2`,
+    /// `s=0;s=1`, `all`. What is left stays unbiased where it reaches
+    #[arg(long, value_name = "SET", default_value = "all")]
+    pub strategies: StrategySet,
+    #[command(flatten)]
+    pub sampling: Sampling,
+}
+
+/// How paths are sampled and weighed.
+#[derive(Debug, Args)]
+pub struct Sampling {
     /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_depth: Option<u32>,
@@ -113,13 +201,24 @@ pub struct Method {
     /// How samples are chosen
     #[arg(long, value_enum, default_value_t = SamplerChoice::Sobol)]
     pub sampler: SamplerChoice,
-    /// Strategies (s, t) of bdpt, with s light and t camera vertices: `s=0`, `t>=2`, `2,3`, `s>=2&t>=2`,
-    /// `s=0;s=1`, `all`. What is left stays unbiased where it reaches
-    #[arg(long, value_name = "SET", default_value = "all")]
-    pub strategies: StrategySet,
-    /// How strategies are weighed
+    /// How the strategies of bdpt are weighed
     #[arg(long, value_enum, default_value_t = HeuristicChoice::Balance)]
     pub heuristic: HeuristicChoice,
+}
+
+impl Sampling {
+    /// The settings of an integrator that is sampled so, with all strategies.
+    pub fn settings(&self, integrator: Integrator) -> Settings {
+        Settings {
+            integrator,
+            max_depth: self.max_depth,
+            roulette_start: self.roulette_depth,
+            seed: self.seed,
+            sampler: self.sampler.into(),
+            heuristic: self.heuristic.into(),
+            ..Settings::default()
+        }
+    }
 }
 
 /// How a PNG looks.
@@ -241,6 +340,11 @@ const INTEGRATOR_ALIASES: [&str; 3] = ["path_mis", "path_mats", "direct_mis"];
 
 fn integrator_names() -> clap::builder::PossibleValuesParser {
     let names = INTEGRATOR_NAMES.iter().map(|(name, _)| *name).chain(INTEGRATOR_ALIASES);
+    clap::builder::PossibleValuesParser::new(names.collect::<Vec<_>>())
+}
+
+fn method_names() -> clap::builder::PossibleValuesParser {
+    let names = INTEGRATOR_NAMES.iter().map(|(name, _)| *name).chain([EYE_ONLY]);
     clap::builder::PossibleValuesParser::new(names.collect::<Vec<_>>())
 }
 

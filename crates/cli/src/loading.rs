@@ -1,9 +1,11 @@
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use caustica::scene::Diagnostic;
 use caustica::scene::bvh::TreeQuality;
+use caustica::description::Integrator;
 use caustica::{Description, Scene, default_scene, import};
 
+use crate::args::Source;
 use crate::console::Console;
 use crate::failure::Failure;
 
@@ -24,4 +26,61 @@ pub fn scene(description: Description, tree: TreeQuality, console: &mut Console)
     let (scene, warnings) = Scene::with_tree(description, tree)?;
     console.warn(warnings);
     Ok(scene)
+}
+
+/// A scene that is ready to be rendered.
+pub struct Opened {
+    pub scene: Scene,
+    /// The integrator that its file asks for.
+    pub integrator: Integrator,
+    /// Samples per pixel that it asks for.
+    pub samples: u32,
+}
+
+/// Loads what is to be rendered.
+pub fn open(source: &Source, console: &mut Console) -> Result<Opened, Failure> {
+    let mut description = description(source.scene.as_deref(), console)?;
+    override_film(&mut description, source, console)?;
+    let (integrator, samples) = (description.integrator, description.samples.max(1));
+    Ok(Opened { scene: scene(description, source.tree.into(), console)?, integrator, samples })
+}
+
+/// `--resolution` and `--crop`.
+fn override_film(d: &mut Description, source: &Source, console: &mut Console) -> Result<(), Failure> {
+    let film = &mut d.film;
+    if let Some((width, height)) = source.resolution {
+        (film.width, film.height) = (width, height);
+        if film.crop.take().is_some() && source.crop.is_none() {
+            console
+                .warn([Diagnostic::warning("the scene's crop window does not count at another resolution")
+                    .hint("choose one by `--crop`")]);
+        }
+    }
+    if let Some(crop) = source.crop {
+        let fits = |start: u32, size: u32, full: u32| start.checked_add(size).is_some_and(|end| end <= full);
+        if !fits(crop.x, crop.width, film.width) || !fits(crop.y, crop.height, film.height) {
+            return Err(Failure::Usage(format!(
+                "the crop window reaches beyond the picture of {} × {} pixels",
+                film.width, film.height
+            )));
+        }
+        film.crop = Some(crop);
+    }
+    Ok(())
+}
+
+impl Source {
+    /// The scene file's name, for people.
+    pub fn name(&self) -> String {
+        let name = self.scene.as_deref().and_then(Path::file_name);
+        name.map_or_else(|| "built-in".to_owned(), |n| n.to_string_lossy().into_owned())
+    }
+
+    /// Where to write what is made of the scene if nobody says: beside it, its name with an ending.
+    pub fn beside(&self, ending: &str) -> PathBuf {
+        let stem = self.scene.as_deref().map_or_else(|| PathBuf::from("caustica"), |s| s.with_extension(""));
+        let mut name = stem.into_os_string();
+        name.push(ending);
+        name.into()
+    }
 }

@@ -1,6 +1,7 @@
 //! The `caustica` program: arguments in, pictures out. All the work is in the `caustica` library.
 
 mod args;
+mod compare;
 mod console;
 mod develop;
 mod failure;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
     let mut console = Console::new(json, quiet);
     let result = match arguments.command {
         Command::Render(a) => render::run(&a, &mut console),
+        Command::Compare(a) => compare::run(&a, &mut console),
         Command::Develop(a) => develop::run(&a, &console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),

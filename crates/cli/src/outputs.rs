@@ -18,7 +18,7 @@ pub struct Outputs {
 impl Outputs {
     /// The files that the arguments ask for; both can be written.
     pub fn new(args: &Render) -> Result<Self, Failure> {
-        let stem = match (&args.output, &args.scene) {
+        let stem = match (&args.output, &args.source.scene) {
             (Some(output), _) => stem(output)?,
             (None, Some(scene)) => scene.with_extension(""),
             (None, None) => PathBuf::from("caustica"),

@@ -36,6 +36,14 @@ impl Bar {
         }
     }
 
+    /// Shows how far a stage of something larger is.
+    pub fn show_stage(&self, stage: &str, p: &Progress) {
+        if let Some(bar) = &self.0 {
+            bar.set_position((p.fraction * STEPS as f64) as u64);
+            bar.set_message(format!("{stage}  {}", message(p)));
+        }
+    }
+
     /// Says something above the bar.
     pub fn note(&self, message: &str) {
         match &self.0 {

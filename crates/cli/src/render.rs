@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use caustica::description::{Description, Integrator};
+use caustica::description::Integrator;
 use caustica::film::{self, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::session::{integrator_by_name, integrator_name};
@@ -30,20 +30,18 @@ struct Outcome<'a> {
 }
 
 pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
-    let mut description = loading::description(args.scene.as_deref(), console)?;
-    override_film(&mut description, args, console)?;
-    let (asked, samples) = (description.integrator, description.samples);
-    let scene = loading::scene(description, args.tree.into(), console)?;
-    let settings = settings(&args.method, &scene, asked);
+    let opened = loading::open(&args.source, console)?;
+    let (scene, samples) = (opened.scene, opened.samples);
+    let settings = settings(&args.method, &scene, opened.integrator);
     if let Some(sample) = args.replay {
         return replay::run(&scene, settings, sample, console);
     }
     let outputs = Outputs::new(args)?;
     let options = RenderOptions {
         settings,
-        samples: args.spp.unwrap_or(if args.time.is_some() { u32::MAX } else { samples.max(1) }),
+        samples: args.spp.unwrap_or(if args.time.is_some() { u32::MAX } else { samples }),
         time: args.time,
-        threads: args.threads.map(usize::from),
+        threads: args.source.threads.map(usize::from),
     };
     let session = Session::new(&scene, options)?;
     console.warn(setting_warnings(args, &session));
@@ -55,49 +53,24 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `--resolution` and `--crop`.
-fn override_film(d: &mut Description, args: &Render, console: &mut Console) -> Result<(), Failure> {
-    let film = &mut d.film;
-    if let Some((width, height)) = args.resolution {
-        (film.width, film.height) = (width, height);
-        if film.crop.take().is_some() && args.crop.is_none() {
-            console
-                .warn([Diagnostic::warning("the scene's crop window does not count at another resolution")
-                    .hint("choose one by `--crop`")]);
-        }
-    }
-    if let Some(crop) = args.crop {
-        let fits = |start: u32, size: u32, full: u32| start.checked_add(size).is_some_and(|end| end <= full);
-        if !fits(crop.x, crop.width, film.width) || !fits(crop.y, crop.height, film.height) {
-            return Err(Failure::Usage(format!(
-                "the crop window reaches beyond the picture of {} × {} pixels",
-                film.width, film.height
-            )));
-        }
-        film.crop = Some(crop);
-    }
-    Ok(())
-}
-
 fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
-    let (_, radius) = scene.bounding_sphere();
-    let (eye, forward) = (scene.camera.position().to_array(), scene.camera.forward().to_array());
     let named = method
         .integrator
         .as_deref()
-        .and_then(|name| integrator_by_name(name, 2.0 * radius, eye, forward))
+        .and_then(|name| integrator(name, scene))
         // If the scene asks for the same, it may have set its parameters.
         .filter(|i| integrator_name(i) != integrator_name(&asked));
     Settings {
-        integrator: named.unwrap_or(asked),
-        max_depth: method.max_depth,
-        roulette_start: method.roulette_depth,
-        seed: method.seed,
-        sampler: method.sampler.into(),
         strategies: method.strategies.clone(),
-        heuristic: method.heuristic.into(),
-        exhaustive_weights: false,
+        ..method.sampling.settings(named.unwrap_or(asked))
     }
+}
+
+/// The integrator of that name, with parameters that suit the scene.
+pub fn integrator(name: &str, scene: &Scene) -> Option<Integrator> {
+    let (_, radius) = scene.bounding_sphere();
+    let (eye, forward) = (scene.camera.position().to_array(), scene.camera.forward().to_array());
+    integrator_by_name(name, 2.0 * radius, eye, forward)
 }
 
 /// Options that do not do what was probably meant.
@@ -154,8 +127,7 @@ fn save(
     interrupts: &Interrupts,
 ) -> Result<LightImage, Failure> {
     let mut metadata = session.metadata(report);
-    let scene = args.scene.as_deref().and_then(Path::file_name).map(|n| n.to_string_lossy().into_owned());
-    metadata.set("scene", scene.unwrap_or_else(|| "built-in".to_owned()));
+    metadata.set("scene", args.source.name());
     let save_exr = |light_image| {
         write_exr(&outputs.exr, picture, light_image, &metadata).map_err(|e| Failure::output(&outputs.exr, e))
     };

@@ -35,10 +35,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
         let channel = channels.iter().find(|c| c.name.eq_case_insensitive(name))?;
         (channel.sampling.x() == 1 && channel.sampling.y() == 1).then_some(&channel.sample_data)
     };
-    let planes = match (find("R"), find("G"), find("B"), find("Y")) {
-        (Some(r), Some(g), Some(b), _) => [r, g, b],
-        (_, _, _, Some(y)) => [y; 3],
-        _ => {
+    let rgb = |prefix: &str| {
+        Some([find(&format!("{prefix}R"))?, find(&format!("{prefix}G"))?, find(&format!("{prefix}B"))?])
+    };
+    // `combined` is what our own files hold beside the eye and the light image.
+    let planes = match rgb("").or_else(|| find("Y").map(|y| [y; 3])).or_else(|| rgb("combined.")) {
+        Some(planes) => planes,
+        None => {
             let names: Vec<String> = channels.iter().take(16).map(|c| c.name.to_string()).collect();
             return Err(format!("its first layer has neither R, G, B nor Y, but {}", names.join(", ")));
         }
