@@ -61,7 +61,8 @@ pub fn run(args: &Compare, console: &mut Console) -> Result<ExitCode, Failure> {
     bar.finish();
     let outcome = outcome.map_err(failure)?;
     let title = format!("{}: integrators compared", args.source.name());
-    let comparison = outcome.page(&title, &args.source.name(), notes(args, scene, budget)).map_err(failure)?;
+    let comparison =
+        outcome.page(&title, &args.source.name(), notes(args, scene, budget)).map_err(failure)?;
     let outputs = save_pictures(&outcome, scene, (&folder, args))?;
     write_comparison(&comparison, &folder).map_err(|e| report_failure(&folder, e))?;
     let told = Told { page: page.display().to_string(), outputs, comparison: &comparison };
@@ -122,10 +123,10 @@ fn notes(args: &Compare, scene: &Scene, budget: Budget) -> Vec<(String, String)>
         Some(time) => format!("{} s", time.as_secs_f64()),
         None => format!("{} samples a pixel", budget.samples),
     };
-    let threads = args.source.threads.map_or_else(
-        || std::thread::available_parallelism().map_or(1, usize::from),
-        usize::from,
-    );
+    let threads = args
+        .source
+        .threads
+        .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let depth = args.sampling.max_depth.map_or_else(|| "no limit".to_owned(), |d| d.to_string());
     [
         ("size", format!("{} × {} pixels", window.width, window.height)),
@@ -175,7 +176,8 @@ fn summary(told: &Told<'_>) -> String {
         "{:<10} {:>9} {:>9} {:>11} {:>11} {:>8} {:>7}\n",
         "", "samples", "seconds", "relMSE", "trimmed", "FLIP", "slope"
     );
-    let figure = |x: Option<f64>, digits: usize| x.map_or_else(|| "–".to_owned(), |x| format!("{x:.digits$}"));
+    let figure =
+        |x: Option<f64>, digits: usize| x.map_or_else(|| "–".to_owned(), |x| format!("{x:.digits$}"));
     let small = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), |x| format!("{x:.3e}"));
     for e in &told.comparison.entries {
         let m = &e.metrics;

@@ -1,8 +1,8 @@
 use std::path::{Path, PathBuf};
 
+use caustica::description::Integrator;
 use caustica::scene::Diagnostic;
 use caustica::scene::bvh::TreeQuality;
-use caustica::description::Integrator;
 use caustica::{Description, Scene, default_scene, import};
 
 use crate::args::Source;

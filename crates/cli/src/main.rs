@@ -11,6 +11,7 @@ mod loading;
 mod outputs;
 mod progress;
 mod prompt;
+mod pyramid;
 mod render;
 mod replay;
 mod snippet;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Render(a) => render::run(&a, &mut console),
         Command::Compare(a) => compare::run(&a, &mut console),
+        Command::Pyramid(a) => pyramid::run(&a, &mut console),
         Command::Develop(a) => develop::run(&a, &console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),

@@ -60,10 +60,7 @@ fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
         .and_then(|name| integrator(name, scene))
         // If the scene asks for the same, it may have set its parameters.
         .filter(|i| integrator_name(i) != integrator_name(&asked));
-    Settings {
-        strategies: method.strategies.clone(),
-        ..method.sampling.settings(named.unwrap_or(asked))
-    }
+    Settings { strategies: method.strategies.clone(), ..method.sampling.settings(named.unwrap_or(asked)) }
 }
 
 /// The integrator of that name, with parameters that suit the scene.

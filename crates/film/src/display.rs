@@ -27,21 +27,31 @@ pub fn write_png(
     pixels: &[Rgb],
     develop: Develop,
 ) -> Result<(), FilmError> {
-    let expected = u64::from(width) * u64::from(height);
-    if pixels.is_empty() || pixels.len() as u64 != expected {
-        let count = pixels.len();
-        return Err(FilmError::Layout(format!("{count} pixels for a picture of {width} × {height}")));
-    }
+    check_count(width, height, pixels.len())?;
     let bytes: Vec<[u8; 3]> =
         pixels.par_iter().map(|p| to_display(*p, develop.exposure, develop.tone_map)).collect();
+    write_srgb_png(path, width, height, &bytes)
+}
+
+/// Writes display values, row by row, as an 8-bit PNG that says it is sRGB: the same pixels give the
+/// same bytes. The file is replaced whole or not at all.
+pub fn write_srgb_png(path: &Path, width: u32, height: u32, pixels: &[[u8; 3]]) -> Result<(), FilmError> {
+    check_count(width, height, pixels.len())?;
     output::write_atomically(path, |file| {
         let mut buffered = BufWriter::new(file);
-        encode(&mut buffered, width, height, bytes.as_flattened()).map_err(|e| match e {
+        encode(&mut buffered, width, height, pixels.as_flattened()).map_err(|e| match e {
             png::EncodingError::IoError(e) => FilmError::io(path, e),
             other => FilmError::format(path, other.to_string()),
         })?;
         buffered.flush().map_err(|e| FilmError::io(path, e))
     })
+}
+
+fn check_count(width: u32, height: u32, count: usize) -> Result<(), FilmError> {
+    if count == 0 || count as u64 != u64::from(width) * u64::from(height) {
+        return Err(FilmError::Layout(format!("{count} pixels for a picture of {width} × {height}")));
+    }
+    Ok(())
 }
 
 fn encode(to: impl Write, width: u32, height: u32, bytes: &[u8]) -> Result<(), png::EncodingError> {
@@ -89,6 +99,8 @@ mod tests {
         let path = folder.path().join("picture.png");
         for (width, height) in [(2, 2), (0, 0), (u32::MAX, u32::MAX)] {
             let error = write_png(&path, width, height, &[Rgb::WHITE; 3], Develop::default()).unwrap_err();
+            assert!(matches!(error, FilmError::Layout(_)), "{error:?}");
+            let error = write_srgb_png(&path, width, height, &[[255; 3]; 3]).unwrap_err();
             assert!(matches!(error, FilmError::Layout(_)), "{error:?}");
         }
         assert!(matches!(write_png(&path, 0, 7, &[], Develop::default()), Err(FilmError::Layout(_))));

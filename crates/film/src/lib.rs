@@ -15,11 +15,11 @@ mod picture;
 mod quantum;
 mod tonemap;
 
-pub use display::{Develop, write_png};
+pub use display::{Develop, write_png, write_srgb_png};
 pub use error::FilmError;
 pub use film::{Film, FilmCounts, LightBuffer};
 pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr, write_layers};
-pub use output::{check_writable, write_file};
+pub use output::{check_writable, write_atomically, write_file};
 pub use picture::{LightImage, Picture};
 pub use tonemap::{ToneMap, to_display};

@@ -22,7 +22,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FilmError> {
 
 /// Writes a file under a temporary name in its folder and then renames it, so that a reader sees the
 /// old file or the new one, and a failure leaves nothing behind.
-pub(crate) fn write_atomically(
+pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut File) -> Result<(), FilmError>,
 ) -> Result<(), FilmError> {

@@ -1,0 +1,1 @@
+//! A real browser that plays our files, where there is one.
