@@ -14,7 +14,7 @@ use super::{PATCH, PATCHES, patches, video};
 use crate::VideoOptions;
 
 /// Two for the bytes of Y′CbCr, one for the quantiser and one for the browser's own rounding; more in blue,
-/// because without a GPU Chromium's factor of Cb is 2 (8 bits) instead of 2.112.
+/// because without a GPU Chromium shows what a factor of Cb of 2 instead of 2.112 gives.
 const TOLERANCE: [u8; 3] = [4, 4, 4 + 13];
 
 const PATIENCE: Duration = Duration::from_secs(90);
