@@ -35,7 +35,8 @@ pub(crate) struct FrameEncoder {
     wished: u8,
     quantiser: u8,
     key_interval: u32,
-    /// The `idr_pic_id` of the encoder's last key frame. Two key frames in a row must not share it.
+    /// How many key frames the encoder has made before its last one, which its `idr_pic_id` follows. Two
+    /// key frames in a row must not share that.
     identity: u32,
     last_was_key: bool,
     pub(crate) track: Track,
@@ -94,7 +95,7 @@ impl FrameEncoder {
         let taken = self.last_was_key && self.identity == 0;
         self.identity = 0;
         if taken {
-            // The first key frame of every encoder has the identity 0: this one is not used.
+            // The first key frame of every encoder has the same identity: this one is not used.
             self.encoder.encode(frame)?;
             self.force_key();
         }
@@ -172,5 +173,28 @@ fn without_start_code(unit: &[u8]) -> &[u8] {
     match unit.iter().position(|byte| *byte != 0) {
         Some(i) if i >= 2 && unit[i] == 1 => &unit[i + 1..],
         _ => unit,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_wished_quality_returns_at_key_frames() {
+        let (mut noise, mut calm) = (Planes::new(64, 48), Planes::new(64, 48));
+        let bit =
+            |i: u32| (i.wrapping_mul(0x85eb_ca6b) ^ i.wrapping_mul(0xc2b2_ae35) >> 7).count_ones() % 2 * 255;
+        let pixels: Vec<_> = (0..64 * 48u32).map(|i| [0, 7, 11].map(|k| bit(i * 13 + k) as u8)).collect();
+        noise.fill(&pixels, 64);
+        calm.fill(&[[128; 3]; 64 * 48], 64);
+        let mut encoder = FrameEncoder::new((64, 48), 2, 100).unwrap();
+        let mut quantisers = Vec::new();
+        for frame in [&calm, &noise, &calm, &calm, &calm, &calm] {
+            encoder.push(frame).unwrap();
+            quantisers.push(encoder.quantiser > encoder.wished);
+        }
+        assert_eq!(quantisers, [false, true, true, true, false, false]);
+        assert_eq!(encoder.track.frames(), 6);
     }
 }

@@ -11,7 +11,7 @@ const BAR_OPACITY: f32 = 0.62;
 const TEXT: Colour = [240, 240, 240];
 const LINE: Colour = [245, 245, 245];
 /// Between pictures that stand side by side.
-const GAP: Colour = [27, 27, 27];
+const JOINT: Colour = [27, 27, 27];
 
 /// A corner of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,26 +89,27 @@ pub fn wipe(a: &Canvas, b: &Canvas, share: f32) -> Result<Canvas, VideoError> {
         let thickness = 1 + height / 600;
         let left = edge as i32 - thickness as i32 / 2;
         // Dark flanks keep the line visible on bright pictures.
-        canvas_line(&mut joined, left - 1, thickness + 2, (BAR, 0.5));
-        canvas_line(&mut joined, left, thickness, (LINE, 1.0));
+        upright_line(&mut joined, left - 1, thickness + 2, (BAR, 0.5));
+        upright_line(&mut joined, left, thickness, (LINE, 1.0));
     }
     Ok(joined)
 }
 
-fn canvas_line(canvas: &mut Canvas, x: i32, width: u32, (colour, opacity): (Colour, f32)) {
+fn upright_line(canvas: &mut Canvas, x: i32, width: u32, (colour, opacity): (Colour, f32)) {
     canvas.fill(Area::new(x, 0, width, canvas.height()), colour, opacity);
 }
 
-/// Both pictures with a narrow gap between them, which is even so that even widths stay even: twice as wide
-/// as one and the gap of 2 pixels, more for larger pictures. An error if they differ in size.
+/// Both pictures beside each other, twice as wide as one, with a narrow dark line over their joint. An error if
+/// they differ in size.
 pub fn side_by_side(a: &Canvas, b: &Canvas) -> Result<Canvas, VideoError> {
     check_same_size(a, b)?;
-    let gap = 2 + a.height() / 400 * 2;
-    let too_wide = || CanvasError::Size { width: u64::from(a.width()) * 2, height: a.height().into() };
-    let width = a.width().checked_mul(2).and_then(|w| w.checked_add(gap)).ok_or_else(too_wide)?;
-    let mut joined = Canvas::new(width, a.height(), GAP)?;
+    let (width, height) = (a.width(), a.height());
+    let too_wide = || CanvasError::Size { width: u64::from(width) * 2, height: height.into() };
+    let mut joined = Canvas::new(width.checked_mul(2).ok_or_else(too_wide)?, height, BAR)?;
     joined.blit(a, 0, 0);
-    joined.blit(b, (a.width() + gap) as i32, 0);
+    joined.blit(b, width as i32, 0);
+    let half = 1 + height / 600;
+    upright_line(&mut joined, width as i32 - half as i32, 2 * half, (JOINT, 1.0));
     Ok(joined)
 }
 
@@ -116,8 +117,7 @@ pub fn side_by_side(a: &Canvas, b: &Canvas) -> Result<Canvas, VideoError> {
 /// if they differ in size.
 pub fn cross_fade(a: &Canvas, b: &Canvas, share: f32) -> Result<Canvas, VideoError> {
     check_same_size(a, b)?;
-    // `max` takes the number where the share is none.
-    let share = share.max(0.0).min(1.0);
+    let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
     let mut faded = a.clone();
     for (to, from) in faded.pixels_mut().iter_mut().zip(b.pixels()) {
         if to != from {

@@ -35,7 +35,7 @@ impl VideoOptions {
     fn check(&self) -> Result<(), VideoError> {
         let Self { width, height, frames_per_second, quality } = *self;
         let (shorter, longer) = (width.min(height), width.max(height));
-        if shorter < 16 || shorter > 2160 || longer > 3840 {
+        if !(16..=2160).contains(&shorter) || longer > 3840 {
             return Err(VideoError::Size { width, height });
         }
         if !(1..=60).contains(&frames_per_second) {

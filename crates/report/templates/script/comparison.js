@@ -32,7 +32,9 @@ async function openComparison(data) {
   };
   if (entries.length) fillTable(document.getElementById("metrics"), entries, show);
   if (!viewer) return null;
-  viewer.open(await comparedImages(data));
+  // Whoever compares puts the best last.
+  const images = await comparedImages(data);
+  viewer.open(images, images.length - 1);
   if (insets.length) new Insets(document.getElementById("insets"), viewer, insets);
   keepAddress(viewer);
   return { viewer };

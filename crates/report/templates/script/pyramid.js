@@ -34,6 +34,8 @@ class Pyramid {
     const widest = Math.max(...tiers.map((tier) => tier.lastChild.childElementCount));
     this.root.querySelector(".tiers").replaceChildren(...tiers);
     this.root.style.setProperty("--widest", widest);
+    const scroller = this.root.querySelector(".tiers");
+    scroller.scrollLeft = (scroller.scrollWidth - scroller.clientWidth) / 2;
     for (const button of this.root.querySelectorAll("[data-set]"))
       button.addEventListener("click", () => this.use(button.dataset.set));
     for (const button of this.root.querySelectorAll("[data-all]"))
@@ -176,7 +178,7 @@ async function openPyramid(data) {
       pyramid.paint();
     });
   });
-  viewer.open(pyramid.images());
+  viewer.open(pyramid.images(), 0);
   keepAddress(viewer);
   return { viewer, pyramid };
 }

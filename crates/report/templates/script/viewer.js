@@ -23,11 +23,11 @@ class Viewer {
     }
   }
 
-  /** Shows the images; to be called once they are unpacked. */
-  open(images) {
+  /** Shows the images, number `first` before the others; to be called once they are unpacked. */
+  open(images, first) {
     this.images = images;
     this.reference = images.find((image) => image.isReference);
-    this.state.image = Math.min(this.reference ? 1 : 0, images.length - 1);
+    this.state.image = first;
     fillControls(this);
     listenToControls(this);
     listenToKeys(this);
@@ -161,6 +161,6 @@ class Viewer {
 
 /** A name and the three linear values of a pixel. */
 function valueCell(name, pixels, { x, y }) {
-  const values = pixelAt(pixels, x, y).map((value, c) => make("b", { class: "rgb"[c] }, short(value)));
+  const values = pixelAt(pixels, x, y).map((value, c) => make("b", { class: "rgb"[c] }, Number.isNaN(value) ? "NaN" : short(value)));
   return make("span", {}, make("i", {}, name), ...values);
 }

@@ -74,12 +74,12 @@ fn fades_are_made_in_linear_light() {
 }
 
 #[test]
-fn pairs_keep_their_pixels_and_even_widths() {
+fn pairs_stand_side_by_side() {
     let (a, b) = (flat(400, 300, [1; 3]), flat(400, 300, [2; 3]));
     let joined = side_by_side(&a, &b).unwrap();
-    assert_eq!((joined.width(), joined.height()), (802, 300));
-    let row = [399, 400, 401, 402].map(|x| joined.get(x, 299).unwrap());
-    assert_eq!(row, [[1; 3], GAP, GAP, [2; 3]]);
+    assert_eq!((joined.width(), joined.height()), (800, 300));
+    let row = [398, 399, 400, 401].map(|x| joined.get(x, 299).unwrap());
+    assert_eq!(row, [[1; 3], JOINT, JOINT, [2; 3]]);
     let other = flat(400, 301, [0; 3]);
     for error in [side_by_side(&a, &other), wipe(&a, &other, 0.5), cross_fade(&a, &other, 0.5)] {
         let text = error.unwrap_err().to_string();

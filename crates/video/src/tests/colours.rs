@@ -89,7 +89,8 @@ fn pure_noise_is_encoded_more_coarsely() {
         (0..9).map(|i| if [0, 1, 5, 8].contains(&i) { board(i) } else { calm.clone() }).collect();
     frames.extend(vec![calm; 8]);
     let options = VideoOptions { quality: 100, frames_per_second: 2, ..VideoOptions::new(128, 96) };
-    let pictures = decoded(&video(options, &frames));
+    let bytes = video(options, &frames);
+    let pictures = decoded(&bytes);
     assert_eq!(pictures.len(), frames.len());
     for (i, (frame, (_, _, pixels))) in frames.iter().zip(&pictures).enumerate() {
         let luma =
@@ -98,5 +99,9 @@ fn pure_noise_is_encoded_more_coarsely() {
         let mean = errors.sum::<f64>() / pixels.len() as f64;
         assert!(mean < 16.0, "frame {i} is off by {mean}");
     }
-    assert!(video(options, &frames) == video(options, &frames));
+    assert!(video(options, &frames) == bytes);
+    let identities = File(&bytes).key_identities();
+    assert!(identities.windows(2).all(|pair| pair[0].is_none() || pair[0] != pair[1]), "{identities:?}");
+    // Among them are two key frames in a row, each from a new encoder.
+    assert!(identities.windows(2).any(|pair| pair[0].is_some() && pair[1].is_some()), "{identities:?}");
 }

@@ -54,6 +54,22 @@ impl<'a> File<'a> {
         });
         frames.collect()
     }
+
+    /// The `idr_pic_id` of each frame that is a key frame (ITU-T H.264, 7.3.3).
+    pub(super) fn key_identities(&self) -> Vec<Option<u32>> {
+        let mut sequence = Bits::new(&self.parameters()[0][4..]);
+        sequence.golomb();
+        let number_length = sequence.golomb() as usize + 4;
+        let identity = |frame: &Vec<u8>| {
+            let start = frame.windows(4).rposition(|window| window == [0, 0, 0, 1]).unwrap() + 4;
+            let mut slice = Bits::new(&frame[start + 1..]);
+            // The first macroblock, the type, the picture's parameters.
+            let _ = [slice.golomb(), slice.golomb(), slice.golomb()];
+            slice.take(number_length);
+            (frame[start] & 31 == 5).then(|| slice.golomb())
+        };
+        self.frames().iter().map(identity).collect()
+    }
 }
 
 fn with_start_codes(mut frame: &[u8]) -> Vec<u8> {

@@ -1,25 +1,14 @@
-//! Both pages with made-up images: `cargo run -p caustica-report --example sample_report -- FOLDER`, then open
-//! `FOLDER/index.html` and `FOLDER/pyramid.html`.
-
-use std::error::Error;
-use std::path::PathBuf;
+//! Made-up images for both pages.
 
 use caustica_math::Rgb;
 use caustica_math::elementary::{cos, pow};
 use caustica_report::{
-    Comparison, CurvePoint, Entry, Inset, Metrics, Pyramid, Shown, Speedup, StrategyImages, write_comparison,
-    write_pyramid,
+    Comparison, CurvePoint, Entry, Inset, Metrics, Pyramid, Shown, Speedup, StrategyImages,
 };
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "sample-report".to_owned()));
-    write_comparison(&comparison(800, 600), &folder)?;
-    write_pyramid(&pyramid(320, 240), &folder.join("pyramid.html"))?;
-    println!("{}", folder.join("index.html").display());
-    Ok(())
-}
-
-fn comparison(width: u32, height: u32) -> Comparison {
+/// Five noisy images of hills and what they should look like.
+pub fn comparison(width: u32, height: u32) -> Comparison {
+    let size = [width.div_ceil(9), height.div_ceil(9)];
     let truth = picture(width, height, |_, colour| colour);
     let methods = [
         ("naive", "emission found by chance", 1.6, 300.0),
@@ -49,8 +38,14 @@ fn comparison(width: u32, height: u32) -> Comparison {
         reference: Some(Shown { name: "reference".into(), width, height, pixels: truth }),
         entries: entries.into(),
         insets: vec![
-            Inset { label: "The sun".into(), x: width / 2 - 45, y: height / 5, width: 90, height: 68 },
-            Inset { label: "A ridge".into(), x: width / 6, y: height / 2, width: 90, height: 68 },
+            Inset {
+                label: "The sun".into(),
+                x: 7 * width / 16,
+                y: height / 5,
+                width: size[0],
+                height: size[1],
+            },
+            Inset { label: "A ridge".into(), x: width / 6, y: height / 2, width: size[0], height: size[1] },
         ],
     }
 }
@@ -88,7 +83,8 @@ fn entry(shown: Shown, label: &str, truth: &[Rgb], samples: f64) -> Entry {
     Entry { shown, label: label.into(), metrics, flip_map: Some(flip_map), curve, slope: Some(-0.99) }
 }
 
-fn pyramid(width: u32, height: u32) -> Pyramid {
+/// What twenty strategies see of the hills.
+pub fn pyramid(width: u32, height: u32) -> Pyramid {
     let mut strategies = Vec::new();
     for length in 1..=5_u32 {
         for s in 0..=length {
