@@ -8,6 +8,7 @@ use caustica::math::Sampler;
 use caustica::scene::bvh::TreeQuality;
 use caustica::session::INTEGRATOR_NAMES;
 use caustica::transport::{Heuristic, StrategySet};
+use caustica_clips::Layout;
 use caustica_compare::{DEFAULT_METHODS, EYE_ONLY};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -37,6 +38,9 @@ pub enum Command {
     Compare(Compare),
     /// Render what each strategy of bdpt finds, as a pyramid of pictures by path length
     Pyramid(Pyramid),
+    /// Make a video (MP4): a render that converges, the strategies of bdpt summed up, or a moving camera
+    #[command(subcommand)]
+    Video(Video),
     /// Make a picture from a rendered OpenEXR file, with or without its light image
     Develop(Develop),
     /// Tell what a scene file holds
@@ -52,6 +56,7 @@ impl Arguments {
             Command::Render(a) => (a.json, a.quiet),
             Command::Compare(a) => (a.json, a.quiet),
             Command::Pyramid(a) => (a.json, a.quiet),
+            Command::Video(a) => (a.clip().json, a.clip().quiet),
             Command::Info(a) => (a.json, false),
             Command::Test(a) => (a.json, false),
             Command::Develop(_) => (false, false),
@@ -161,6 +166,108 @@ pub struct Pyramid {
     pub rows: u32,
     #[command(flatten)]
     pub sampling: Sampling,
+    #[command(flatten)]
+    pub look: Look,
+    /// Say nothing but errors: no progress bar, no warnings, no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print the result, warnings or the error as one JSON object on the standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Video {
+    /// A render that converges, with and without its light image
+    Converge(Converge),
+    /// The strategies of bdpt added up one by one: the sum at the left, what is added at the right
+    Pyramid(PyramidVideo),
+    /// A camera that swings around what it looks at
+    Orbit(OrbitVideo),
+}
+
+impl Video {
+    /// What all kinds have.
+    pub fn clip(&self) -> &Clip {
+        match self {
+            Self::Converge(a) => &a.clip,
+            Self::Pyramid(a) => &a.clip,
+            Self::Orbit(a) => &a.clip,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub struct Converge {
+    #[command(flatten)]
+    pub clip: Clip,
+    /// Samples per pixel at the end [default: as the scene says, or without limit if --time is given]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Render for so long at most: 90, 60s, 5m, 2h
+    #[arg(long, value_parser = parse_duration)]
+    pub time: Option<Duration>,
+    /// How the picture with its light image and that without share the frame
+    #[arg(long, value_enum, default_value_t = LayoutChoice::Wipe)]
+    pub layout: LayoutChoice,
+    /// Seconds for which the end is held, after the others
+    #[arg(long, default_value_t = 4.0, value_parser = parse_seconds)]
+    pub hold: f32,
+    #[command(flatten)]
+    pub method: Method,
+}
+
+#[derive(Debug, Args)]
+pub struct PyramidVideo {
+    #[command(flatten)]
+    pub clip: Clip,
+    /// Samples per pixel [default: as the scene says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// The most edges of paths whose strategies are added one by one
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=16))]
+    pub rows: u32,
+    /// Seconds for which the end is held, after the others
+    #[arg(long, default_value_t = 3.0, value_parser = parse_seconds)]
+    pub hold: f32,
+    #[command(flatten)]
+    pub sampling: Sampling,
+}
+
+#[derive(Debug, Args)]
+pub struct OrbitVideo {
+    #[command(flatten)]
+    pub clip: Clip,
+    /// Samples per pixel of every frame
+    #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: u32,
+    /// The whole angle: 360 goes round, less swings there and back
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    pub degrees: f64,
+    /// The point to go around [default: what the middle of the picture shows]
+    #[arg(long, value_name = "X,Y,Z", allow_negative_numbers = true, value_parser = parse_point)]
+    pub centre: Option<[f32; 3]>,
+    #[command(flatten)]
+    pub method: Method,
+}
+
+/// What all videos have.
+#[derive(Debug, Args)]
+pub struct Clip {
+    #[command(flatten)]
+    pub source: Source,
+    /// The file, which ends in .mp4 [default: SCENE-KIND.mp4 beside the scene]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Length in seconds
+    #[arg(long, default_value_t = 10.0, value_parser = parse_seconds)]
+    pub seconds: f32,
+    /// Frames per second
+    #[arg(long, value_name = "N", default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=60))]
+    pub fps: u32,
+    /// From 0, the smallest file, to 100, the best picture
+    #[arg(long, value_name = "N", default_value_t = 80, value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub quality: u8,
     #[command(flatten)]
     pub look: Look,
     /// Say nothing but errors: no progress bar, no warnings, no summary
@@ -281,6 +388,33 @@ pub enum LightImageChoice {
     Only,
     /// Asked at the end
     Ask,
+}
+
+/// How the picture with its light image and that without share a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LayoutChoice {
+    /// A line sweeps over the picture
+    Wipe,
+    /// One, then the other
+    Toggle,
+    /// Side by side
+    Side,
+    /// With the light image alone
+    With,
+    /// Without it alone
+    Without,
+}
+
+impl From<LayoutChoice> for Layout {
+    fn from(choice: LayoutChoice) -> Self {
+        match choice {
+            LayoutChoice::Wipe => Self::Wipe,
+            LayoutChoice::Toggle => Self::Toggle,
+            LayoutChoice::Side => Self::Side,
+            LayoutChoice::With => Self::With,
+            LayoutChoice::Without => Self::Without,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -404,6 +538,21 @@ fn parse_replay(text: &str) -> Result<([u32; 2], u32), String> {
     match numbers(text) {
         Some([x, y, sample]) => Ok(([x, y], sample)),
         None => Err("use X,Y,SAMPLE, such as 320,240,0".into()),
+    }
+}
+
+fn parse_seconds(text: &str) -> Result<f32, String> {
+    match text.trim().trim_end_matches('s').parse::<f32>() {
+        Ok(s) if (0.0..=3600.0).contains(&s) => Ok(s),
+        _ => Err("use a number of seconds from 0 to 3600".into()),
+    }
+}
+
+fn parse_point(text: &str) -> Result<[f32; 3], String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|p| p.trim().parse().ok()).collect();
+    match numbers.and_then(|n| <[f32; 3]>::try_from(n).ok()) {
+        Some(point) if point.iter().all(|c| c.is_finite()) => Ok(point),
+        _ => Err("use X,Y,Z, such as 0,1.5,-2".into()),
     }
 }
 

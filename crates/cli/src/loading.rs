@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use caustica::description::Integrator;
+use caustica::description::{Camera, Integrator};
 use caustica::scene::Diagnostic;
 use caustica::scene::bvh::TreeQuality;
 use caustica::{Description, Scene, default_scene, import};
@@ -35,6 +35,8 @@ pub struct Opened {
     pub integrator: Integrator,
     /// Samples per pixel that it asks for.
     pub samples: u32,
+    /// Its camera.
+    pub camera: Camera,
 }
 
 /// Loads what is to be rendered.
@@ -42,7 +44,8 @@ pub fn open(source: &Source, console: &mut Console) -> Result<Opened, Failure> {
     let mut description = description(source.scene.as_deref(), console)?;
     override_film(&mut description, source, console)?;
     let (integrator, samples) = (description.integrator, description.samples.max(1));
-    Ok(Opened { scene: scene(description, source.tree.into(), console)?, integrator, samples })
+    let camera = description.camera.clone();
+    Ok(Opened { scene: scene(description, source.tree.into(), console)?, integrator, samples, camera })
 }
 
 /// `--resolution` and `--crop`.

@@ -16,6 +16,7 @@ mod render;
 mod replay;
 mod snippet;
 mod tests;
+mod video;
 
 use std::process::ExitCode;
 
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Command::Render(a) => render::run(&a, &mut console),
         Command::Compare(a) => compare::run(&a, &mut console),
         Command::Pyramid(a) => pyramid::run(&a, &mut console),
+        Command::Video(a) => video::run(&a, &mut console),
         Command::Develop(a) => develop::run(&a, &console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),

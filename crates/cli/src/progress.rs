@@ -44,6 +44,17 @@ impl Bar {
         }
     }
 
+    /// Shows how many of a video's frames there are.
+    pub fn show_frames(&self, done: u32, total: u32) {
+        if let Some(bar) = &self.0 {
+            bar.set_position(u64::from(done) * STEPS / u64::from(total.max(1)));
+            bar.set_message(format!(
+                "frame {done}/{total}  {} so far",
+                duration(bar.elapsed().as_secs_f64())
+            ));
+        }
+    }
+
     /// Says something above the bar.
     pub fn note(&self, message: &str) {
         match &self.0 {

@@ -53,7 +53,8 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
+/// The settings that the arguments ask for; the scene's own integrator if they name none.
+pub fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
     let named = method
         .integrator
         .as_deref()

@@ -111,10 +111,16 @@ impl Outcome {
             scene: scene.to_owned(),
             notes: all_notes,
             reference: Some(self.shown(&self.reference.name, &self.reference.pixels)),
-            speedups: speedups(&entries),
+            speedups: speedups(&entries, self.mean()?),
             entries,
             insets: insets.into_iter().enumerate().map(inset).collect(),
         })
+    }
+
+    /// The reference's mean luminance.
+    fn mean(&self) -> Result<f64, CompareError> {
+        let reference = self.image(&self.reference.pixels)?;
+        Ok(errors(reference, reference)?.mean)
     }
 
     fn image<'a>(&self, pixels: &'a [Rgb]) -> Result<Image<'a>, MetricsError> {
@@ -200,10 +206,15 @@ fn inset((i, r): (usize, Region)) -> Inset {
     Inset { label, x: r.x, y: r.y, width: r.width, height: r.height }
 }
 
-/// How much sooner the best method of all reaches the error that each other one ends with.
-fn speedups(entries: &[Entry]) -> Vec<Speedup> {
+/// A method whose mean is farther off than this share does not reach all light: its error does not fall for long.
+const LOST: f64 = 0.05;
+
+/// How much sooner the best method of those that reach all light has the error that each other one ends with.
+fn speedups(entries: &[Entry], mean: f64) -> Vec<Speedup> {
     let error = |e: &Entry| e.metrics.rel_mse.filter(|x| !x.is_nan()).unwrap_or(f64::INFINITY);
-    let Some(best) = entries.iter().min_by(|a, b| error(a).total_cmp(&error(b))) else { return Vec::new() };
+    let whole = |e: &&Entry| (e.metrics.mean - mean).abs() <= LOST * mean;
+    let best = entries.iter().filter(whole).min_by(|a, b| error(a).total_cmp(&error(b)));
+    let Some(best) = best else { return Vec::new() };
     let curve: Vec<Point> = best
         .curve
         .iter()

@@ -1,0 +1,132 @@
+//! What all clips share.
+
+use std::path::{Path, PathBuf};
+
+use caustica_canvas::{Canvas, CanvasError};
+use caustica_film::{Develop, to_display};
+use caustica_math::Rgb;
+use caustica_render::{Control, RenderError};
+use caustica_scene::Diagnostic;
+use caustica_video::{Summary, VideoError, VideoOptions, VideoWriter};
+
+/// How a clip is made.
+#[derive(Clone, Debug)]
+pub struct ClipOptions {
+    /// The file.
+    pub path: PathBuf,
+    /// What the scene is called in captions.
+    pub title: String,
+    /// From 1 to 60.
+    pub frames_per_second: u32,
+    /// How long the clip is; what is held at the end comes on top.
+    pub seconds: f32,
+    /// From 0 to 100.
+    pub quality: u8,
+    /// How linear light is shown.
+    pub develop: Develop,
+}
+
+impl ClipOptions {
+    /// Frames of the clip, without what is held at the end: one at least.
+    pub(crate) fn frames(&self) -> u32 {
+        ((self.seconds * self.frames_per_second as f32) as u32).max(1)
+    }
+
+    /// Frames of a time in seconds.
+    pub(crate) fn frames_of(&self, seconds: f32) -> u32 {
+        (seconds * self.frames_per_second as f32) as u32
+    }
+
+    /// The time of a frame in seconds.
+    pub(crate) fn time_of(&self, frame: u32) -> f32 {
+        frame as f32 / self.frames_per_second as f32
+    }
+
+    /// Linear pixels as a display shows them.
+    pub(crate) fn show(&self, pixels: &[Rgb], [width, height]: [u32; 2]) -> Result<Canvas, CanvasError> {
+        let shown = |p: &Rgb| to_display(*p, self.develop.exposure, self.develop.tone_map);
+        Canvas::from_pixels(width, height, pixels.iter().map(shown).collect())
+    }
+}
+
+/// How far a clip is: frames written, and frames in all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Frames written.
+    pub done: u32,
+    /// Frames in all.
+    pub total: u32,
+}
+
+/// Why a clip could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ClipError {
+    /// Rendering.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A camera that cannot stand where the clip puts it.
+    #[error(transparent)]
+    Camera(#[from] Box<Diagnostic>),
+    /// Drawing.
+    #[error(transparent)]
+    Canvas(#[from] CanvasError),
+    /// Encoding or writing.
+    #[error(transparent)]
+    Video(#[from] VideoError),
+    /// It was stopped; nothing was written.
+    #[error("the video was stopped, and nothing is written")]
+    Stopped,
+}
+
+/// A video that begins with its first frame, whose size it takes.
+pub(crate) struct Reel<'a, P> {
+    options: &'a ClipOptions,
+    control: &'a Control,
+    progress: P,
+    total: u32,
+    done: u32,
+    writer: Option<VideoWriter>,
+}
+
+impl<'a, P: FnMut(Step)> Reel<'a, P> {
+    pub fn new(options: &'a ClipOptions, control: &'a Control, total: u32, progress: P) -> Self {
+        Self { options, control, progress, total, done: 0, writer: None }
+    }
+
+    /// Adds a frame.
+    pub fn push(&mut self, frame: &Canvas) -> Result<(), ClipError> {
+        if self.control.is_stopped() {
+            return Err(ClipError::Stopped);
+        }
+        if self.writer.is_none() {
+            self.writer = Some(VideoWriter::create(
+                &self.options.path,
+                VideoOptions {
+                    width: frame.width(),
+                    height: frame.height(),
+                    frames_per_second: self.options.frames_per_second,
+                    quality: self.options.quality,
+                },
+            )?);
+        }
+        if let Some(writer) = &mut self.writer {
+            writer.push(frame)?;
+        }
+        self.done += 1;
+        (self.progress)(Step { done: self.done, total: self.total });
+        Ok(())
+    }
+
+    /// Writes the file.
+    pub fn finish(self) -> Result<Summary, ClipError> {
+        match self.writer {
+            Some(writer) => Ok(writer.finish()?),
+            None => Err(ClipError::Stopped),
+        }
+    }
+}
+
+/// Whether a video can be written there: to be asked before hours of work.
+pub(crate) fn check(path: &Path) -> Result<(), ClipError> {
+    caustica_film::check_writable(path).map_err(|e| ClipError::Render(e.into()))
+}
