@@ -104,6 +104,10 @@ mod tests {
         let mut canvas = Canvas::new(2, 1, [100, 200, 0]).unwrap();
         canvas.fill(Area::new(1, 0, 9, 9), WHITE, 0.6);
         assert_eq!(canvas.pixels(), [[100, 200, 0], [193, 233, 153]]);
+        // 200 · 77 / 255 and 25 · 178 / 255 add up to 77.8.
+        let mut rounded = Canvas::new(1, 1, [25; 3]).unwrap();
+        rounded.fill(Area::new(0, 0, 1, 1), [200; 3], 0.3);
+        assert_eq!(rounded.pixels(), [[78; 3]]);
         canvas.fill(Area::new(-7, -7, 8, 8), [1, 2, 3], 7.0);
         assert_eq!(canvas.pixels()[0], [1, 2, 3]);
         canvas.fill(Area::new(0, 0, 2, 1), WHITE, f32::NAN);

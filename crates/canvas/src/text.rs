@@ -262,8 +262,8 @@ mod tests {
         assert_eq!(shortened("abcdef", TextSize::Small, 41), "ab...");
         assert_eq!(shortened("ab cdef", TextSize::Small, 48), "ab...");
         assert_eq!(shortened("abcdef", TextSize::Small, 20), "");
-        let lines = wrapped("one two  three incomprehensible", TextSize::Small, 56);
-        assert_eq!(lines, ["one two", "three", "incom..."]);
+        let lines = wrapped("one two  three incomprehensible", TextSize::Small, 49);
+        assert_eq!(lines, ["one two", "three", "inco..."]);
         assert_eq!(wrapped("", TextSize::Small, 50), [""]);
     }
 }

@@ -8,8 +8,8 @@
 //!
 //! Pictures are sRGB. They are stored as BT.709 Y′CbCr in limited range, 4:2:0, and both the H.264
 //! stream and the MP4 file say so: primaries 1, transfer 13 (sRGB), matrix 1 of ITU-T H.273. The
-//! transfer is that of the pixels as they come. Browsers that heed it (Safari) would show them too
-//! bright if they were marked as BT.709's camera curve; to the others the two are the same.
+//! transfer is that of the pixels as they come. Players that manage colours by it, as Apple's do, show
+//! sRGB pixels too bright where they are marked as BT.709's camera curve (1); Chromium shows both alike.
 
 mod encoder;
 mod error;

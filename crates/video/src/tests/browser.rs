@@ -21,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(90);
 
 /// Where Chromium is: the variable `CHROMIUM`, or one of its names in the path.
 fn chromium() -> Option<PathBuf> {
-    let named = env::var_os("CHROMIUM").map(PathBuf::from);
+    let named = env::var_os("CHROMIUM").filter(|name| !name.is_empty()).map(PathBuf::from);
     let folders: Vec<_> = env::split_paths(&env::var_os("PATH").unwrap_or_default()).collect();
     let names = ["chromium", "chromium-browser", "google-chrome"];
     let mut found = names.into_iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
