@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use caustica_canvas::Canvas;
 use caustica_film::{LightImage, Picture};
-use caustica_render::{Budget, Control, RenderOptions, Session, integrator_name};
+use caustica_render::{Budget, Control, RenderOptions, Session};
 use caustica_scene::Scene;
 use caustica_video::{Corner, Summary, caption, cross_fade, label, side_by_side, sweep, toggle, wipe};
 use libm::{pow, round};
@@ -146,11 +146,6 @@ fn compose(shown: &Shown, layout: Layout, options: &ClipOptions, frame: u32) -> 
     }
     caption(&mut canvas, &options.title, text);
     Ok(canvas)
-}
-
-/// The name of an integrator, for titles.
-pub(crate) fn name(render: &RenderOptions) -> &'static str {
-    integrator_name(&render.settings.integrator)
 }
 
 /// "8.3 s", "2 min 05 s".

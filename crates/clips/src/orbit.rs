@@ -11,7 +11,6 @@ use caustica_transport::Settings;
 use caustica_video::{Summary, caption};
 use libm::sin;
 
-use crate::converge::name;
 use crate::reel::{ClipError, ClipOptions, Reel, Step, check};
 
 /// How the camera moves.
@@ -39,10 +38,23 @@ pub fn orbit(
     progress: impl FnMut(Step),
 ) -> Result<Summary, ClipError> {
     check(&options.path)?;
+    let before = scene.camera.clone();
+    let mut reel = Reel::new(options, control, options.frames(), progress);
+    let swung = swing(scene, (camera, what), options, (control, &mut reel));
+    scene.camera = before;
+    swung.and_then(|()| reel.finish())
+}
+
+/// Adds all frames.
+fn swing<P: FnMut(Step)>(
+    scene: &mut Scene,
+    (camera, what): (&description::Camera, &Orbit),
+    options: &ClipOptions,
+    (control, reel): (&Control, &mut Reel<'_, P>),
+) -> Result<(), ClipError> {
     let centre = what.centre.unwrap_or_else(|| looked_at(scene));
     let axis = nearest_axis(camera.to_world.vector(Vec3::Y));
     let frames = options.frames();
-    let mut reel = Reel::new(options, control, frames, progress);
     for frame in 0..frames {
         let turned = turned(camera, centre, (axis, angle(what.degrees, frame, frames)));
         scene.camera = place(&turned, &scene.film)?;
@@ -54,11 +66,10 @@ pub fn orbit(
         let Window { width, height, .. } = picture.window;
         let mut canvas = options.show(&picture.combined(LightImage::On), [width, height])?;
         let samples = picture.eye_samples.max(picture.light_samples);
-        caption(&mut canvas, &options.title, &format!("{}   {samples} spp", name(&what.render)));
+        caption(&mut canvas, &options.title, &format!("{samples} spp"));
         reel.push(&canvas)?;
     }
-    scene.camera = place(camera, &scene.film)?;
-    reel.finish()
+    Ok(())
 }
 
 /// What the middle of the picture shows; where nothing is, a point at the distance of the scene's middle.
