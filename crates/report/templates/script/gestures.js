@@ -7,6 +7,7 @@ function listenToGestures(stage, view, { changed, pointed }) {
   const fingers = new Map();
   let lastTap = { time: -Infinity, x: 0, y: 0 };
   let travelled = 0;
+  let isTouch = false;
   const place = (event) => {
     const box = stage.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top };
@@ -52,6 +53,7 @@ function listenToGestures(stage, view, { changed, pointed }) {
     if (event.button > 0 || fingers.size > 1 || event.target.closest("button, .divider")) return;
     stage.setPointerCapture(event.pointerId);
     if (!fingers.size) travelled = 0;
+    isTouch = event.pointerType === "touch";
     fingers.set(event.pointerId, place(event));
     pointed(place(event));
   });
@@ -59,10 +61,12 @@ function listenToGestures(stage, view, { changed, pointed }) {
   stage.addEventListener("pointerup", release);
   stage.addEventListener("pointercancel", release);
   stage.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && pointed(null));
-  stage.addEventListener("dblclick", (event) => zoomInOrBack(place(event)));
+  // Some browsers send this after two taps as well, which `release` has answered already.
+  stage.addEventListener("dblclick", (event) => isTouch || zoomInOrBack(place(event)));
   stage.addEventListener("wheel", (event) => {
     event.preventDefault();
-    const lines = event.deltaMode ? 16 : 1;
+    // Touchpads send pinches as small turns of the wheel with Ctrl.
+    const lines = event.deltaMode ? 16 : event.ctrlKey ? 4 : 1;
     const { x, y } = place(event);
     view.zoom(2 ** (-Math.max(Math.min(event.deltaY * lines, 200), -200) / 200), x, y);
     changed();

@@ -179,6 +179,9 @@ async function openPyramid(data) {
     });
   });
   viewer.open(pyramid.images(), 0);
+  const words = new URLSearchParams(location.hash.slice(1));
+  const named = data.strategies.findIndex((strategy) => [words.get("image"), words.get("split")].includes(nameOf(strategy)));
+  if (named >= 0) pyramid.choose(named, 0);
   keepAddress(viewer);
   return { viewer, pyramid };
 }

@@ -276,6 +276,10 @@ fn fingers_move_and_zoom() {
         page.swipe(&[[x, y]], &[[x - 60.0, y]]);
         let moved = page.number("caustica.viewer.view.x") - before;
         assert!((moved * scale - 60.0).abs() < 15.0, "{moved}");
+        for expected in [fit, 4.0_f64.max(2.0 * fit)] {
+            page.tap_twice([x, y]);
+            assert!((page.number("caustica.viewer.view.scale") - expected).abs() < 1e-6, "{expected}");
+        }
         page.key("h");
         check_split(&mut page);
         assert_eq!(page.complaints(), [""; 0]);

@@ -89,6 +89,15 @@ fn check_large(page: &mut Page) {
     page.eval("caustica.viewer.set({ stops: 0 })");
 }
 
+/// However far the tiers are scrolled, the picture is seen.
+fn check_sight(page: &mut Page) {
+    page.eval("document.querySelector('.tier:last-child').scrollIntoView({ block: 'end' })");
+    page.settle();
+    let top = page.number("caustica.viewer.parts.stage.getBoundingClientRect().top");
+    assert!(top >= 0.0, "{top}");
+    page.eval("scrollTo(0, 0)");
+}
+
 #[test]
 fn switches_change_the_sum() {
     let folder = tempfile::tempdir().unwrap();
@@ -101,6 +110,11 @@ fn switches_change_the_sum() {
         assert_eq!(page.number("document.querySelectorAll('.tier').length"), 3.0);
         check_switches(&mut page);
         check_large(&mut page);
+        check_sight(&mut page);
         assert_eq!(page.complaints(), [""; 0], "{device:?}");
     }
+    let address = format!("file://{}#image=s+%3D+1%2C+t+%3D+2&stops=1", file.display());
+    let mut page = browser.open_address(&address, LAPTOP);
+    assert_eq!(page.text("[data-part=tag-left]"), "s = 1, t = 2");
+    assert_eq!(page.number("caustica.viewer.state.stops"), 1.0);
 }
