@@ -21,7 +21,7 @@ function short(value) {
   const size = Math.abs(value);
   if (value !== 0 && (size < 1e-3 || size >= 1e5)) {
     const [digits, exponent] = value.toExponential(2).split("e");
-    return `${digits}·10${[...String(Number(exponent))].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")}`;
+    return `${digits}·${power(Number(exponent))}`;
   }
   return size >= 1000 ? value.toFixed(0) : value.toPrecision(4);
 }
@@ -84,7 +84,8 @@ function listenToControls(viewer) {
 function fillControls(viewer) {
   const { parts, images } = viewer;
   parts.pick.replaceChildren(...images.map((image, index) => {
-    const button = make("button", { type: "button", title: image.label || image.name }, make("kbd", {}, image.key), image.name);
+    const title = image.label || image.name;
+    const button = make("button", { type: "button", title }, make("kbd", {}, image.key), image.name);
     button.addEventListener("click", () => viewer.set({ image: index }));
     return button;
   }));

@@ -32,7 +32,7 @@ fn keep(page: &mut Page, name: &str) {
 
 /// Nothing may be wider than the window, and text must stand out from its ground.
 fn check(page: &mut Page, device: Device) {
-    let wide = page.number("document.documentElement.scrollWidth - innerWidth");
+    let wide = page.number("document.documentElement.scrollWidth") - f64::from(device.width);
     assert!(wide <= 0.0, "{device:?}: the page is {wide} pixels too wide");
     let light = |property: &str| {
         format!(

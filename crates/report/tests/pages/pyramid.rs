@@ -83,7 +83,8 @@ fn check_large(page: &mut Page) {
     assert_near(page.colour(at), [1.0, 0.5, 0.25].map(|c| byte(2.0 * c * share(2, 2, 100))));
     // Thumbnails follow the exposure. Cells are told by their place: (2, 2) is the third of the third tier.
     page.settle();
-    let pixel = "[...document.querySelectorAll('.tier:nth-child(3) canvas')[2].getContext('2d').getImageData(4, 3, 1, 1).data]";
+    let pixel = "[...document.querySelectorAll('.tier:nth-child(3) canvas')[2]
+        .getContext('2d').getImageData(4, 3, 1, 1).data]";
     let thumbnail = page.eval(pixel);
     assert_eq!(thumbnail[0], byte(2.0 * share(2, 2, 100)), "{thumbnail}");
     page.eval("caustica.viewer.set({ stops: 0 })");
