@@ -57,7 +57,7 @@ fn rests(plane: &[u16], width: usize) -> Vec<u16> {
 /// The mean of the left and the upper neighbour, as signed numbers; one of them at the edges.
 fn predict(plane: &[u16], i: usize, width: usize) -> u16 {
     let signed = |i: usize| i32::from(plane[i] as i16);
-    match (i % width > 0, i >= width) {
+    match (!i.is_multiple_of(width), i >= width) {
         (true, true) => ((signed(i - 1) + signed(i - width)) >> 1) as u16,
         (true, false) => plane[i - 1],
         (false, true) => plane[i - width],

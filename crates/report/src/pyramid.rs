@@ -12,8 +12,8 @@ use crate::ReportError;
 use crate::encode::encode_rgb;
 use crate::page::{Blob, SCRIPT, STYLE, check_count, script_json};
 
-/// What every strategy adds to an image. A page has two images a strategy: at 400 × 300 pixels and a
-/// depth of six it weighs some 15 MB.
+/// What every strategy adds to an image. A page has two images a strategy: twenty noisy strategies of
+/// 400 × 300 pixels weigh 16 MB.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Pyramid {
     /// The heading.

@@ -78,12 +78,13 @@ fn little_is_enough() {
 
 #[test]
 fn what_does_not_fit_is_an_error() {
-    let changed = |change: fn(&mut Comparison)| {
+    type Change = fn(&mut Comparison);
+    let changed = |change: Change| {
         let mut c = comparison();
         change(&mut c);
         comparison_page(&c).unwrap_err().to_string()
     };
-    let table: [(fn(&mut Comparison), &str); 6] = [
+    let table: [(Change, &str); 6] = [
         (|c| c.entries[0].shown = shown("path", 2, 2), "`path` is 2 × 2, but `reference` is 3 × 2"),
         (|c| c.entries[0].shown.pixels.truncate(5), "`path` has 5 pixels, but 3 × 2"),
         (|c| c.entries[0].flip_map = Some(vec![0.0]), "`path (FLIP)` has 1 pixels"),

@@ -11,14 +11,20 @@ const SRGB = Uint8Array.from({ length: 65536 }, (_, i) => {
 
 /** Troy Sobotka's AgX with the constants that Benjamin Wrensch published; as in crates/film/src/tonemap.rs. */
 const AGX = {
-  inset: [0.84247906, 0.0784336, 0.079223745, 0.042328242, 0.87846864, 0.07916613, 0.042375654, 0.0784336, 0.879143],
-  outset: [1.196879, -0.09802088, -0.09902974, -0.05289685, 1.1519031, -0.098961174, -0.052971635, -0.09804345, 1.1510737],
+  inset: [
+    0.84247906, 0.0784336, 0.079223745, 0.042328242, 0.87846864, 0.07916613, 0.042375654, 0.0784336, 0.879143,
+  ],
+  outset: [
+    1.196879, -0.09802088, -0.09902974, -0.05289685, 1.1519031, -0.098961174, -0.052971635, -0.09804345, 1.1510737,
+  ],
   range: [-12.47393, 4.026069],
   contrast: [15.5, -40.14, 31.96, -6.868, 0.4298, 0.1191, -0.00232],
 };
 
 /** Magma by Nathaniel Smith and Stéfan van der Walt (CC0), each tenth. */
-const MAGMA = [0x000004, 0x140e36, 0x3b0f70, 0x641a80, 0x8c2981, 0xb73779, 0xde4968, 0xf7705c, 0xfe9f6d, 0xfecf92, 0xfcfdbf];
+const MAGMA = [
+  0x000004, 0x140e36, 0x3b0f70, 0x641a80, 0x8c2981, 0xb73779, 0xde4968, 0xf7705c, 0xfe9f6d, 0xfecf92, 0xfcfdbf,
+];
 /** Too dark is blue, right is nearly black, too bright is orange. */
 const SIGNED = [0xb8e2ff, 0x4aa3e8, 0x14518f, 0x141619, 0x9c4410, 0xf08a2c, 0xffe3a8];
 

@@ -4,8 +4,10 @@
 async function comparedImages({ reference, entries }) {
   const images = [];
   const read = ({ width, height }, id) => unpackRgb(id, width, height);
-  if (reference)
-    images.push({ name: reference.name || "reference", key: "0", isReference: true, pixels: await read(reference, "reference") });
+  if (reference) {
+    const pixels = await read(reference, "reference");
+    images.push({ name: reference.name || "reference", key: "0", isReference: true, pixels });
+  }
   for (const [i, { shown, label }] of entries.entries()) {
     const hasFlip = document.getElementById(`flip-${i}`) !== null;
     images.push({

@@ -21,7 +21,7 @@ function short(value) {
   const size = Math.abs(value);
   if (value !== 0 && (size < 1e-3 || size >= 1e5)) {
     const [digits, exponent] = value.toExponential(2).split("e");
-    return `${digits}·10${[...String(Number(exponent))].map((c) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("")}`;
+    return `${digits}·${power(Number(exponent))}`;
   }
   return size >= 1000 ? value.toFixed(0) : value.toPrecision(4);
 }
@@ -58,8 +58,11 @@ function listenToKeys(viewer) {
     if (event.key.startsWith("Arrow") && !onStage) return;
     if (event.key.startsWith("Arrow") && event.target === document.body && viewer.view.fitted) return;
     if (/^[0-9]$/.test(event.key)) viewer.pick(event.key);
-    else if (KEYS[event.key]) KEYS[event.key](viewer);
-    else return;
+    else {
+      const act = KEYS[event.key] ?? KEYS[event.key.toLowerCase()];
+      if (!act) return;
+      act(viewer);
+    }
     event.preventDefault();
   });
 }
@@ -81,7 +84,8 @@ function listenToControls(viewer) {
 function fillControls(viewer) {
   const { parts, images } = viewer;
   parts.pick.replaceChildren(...images.map((image, index) => {
-    const button = make("button", { type: "button", title: image.label || image.name }, make("kbd", {}, image.key), image.name);
+    const title = image.label || image.name;
+    const button = make("button", { type: "button", title }, make("kbd", {}, image.key), image.name);
     button.addEventListener("click", () => viewer.set({ image: index }));
     return button;
   }));
@@ -97,6 +101,7 @@ function fillControls(viewer) {
 function showState(viewer) {
   const { parts, state, images, view } = viewer;
   [...parts.pick.children].forEach((button, index) => button.setAttribute("aria-pressed", index === state.image));
+  keepInSight(parts.pick, parts.pick.children[state.image]);
   parts.exposure.value = state.stops;
   parts.stops.textContent = state.stops ? signed(state.stops) : "0";
   parts.tone.value = state.tone;
@@ -110,6 +115,13 @@ function showState(viewer) {
   parts["tag-right"].textContent = isSplit ? images[state.split].name : "";
   parts.stage.style.touchAction = view.fitted || view.scale <= view.fitScale * 1.001 ? "pan-y" : "none";
   showScale(parts.scale, viewer.shownMode());
+}
+
+/** Scrolls a bar, and nothing else, so far that a child of it is seen. */
+function keepInSight(bar, child) {
+  const [whole, part] = [bar.getBoundingClientRect(), child.getBoundingClientRect()];
+  if (part.right > whole.right) bar.scrollLeft += part.right - whole.right + 4;
+  else if (part.left < whole.left) bar.scrollLeft += part.left - whole.left - 4;
 }
 
 /** The legend of the error colours. */

@@ -58,8 +58,9 @@ class Curves {
   legend(list) {
     const items = this.entries.map((entry, index) => {
       const line = make("i", { class: "dash", style: `--ink: var(--ink-${index % 8})` });
-      const button = make("button", { type: "button", class: "plain", "aria-pressed": true }, line, entry.shown.name);
-      if (Number.isFinite(entry.slope ?? NaN)) button.append(make("small", {}, `slope ${entry.slope.toFixed(2).replace("-", "−")}`));
+      const { name } = entry.shown;
+      const button = make("button", { type: "button", class: "plain", "aria-pressed": true }, line, name);
+      if (Number.isFinite(entry.slope ?? NaN)) button.append(make("small", {}, `slope ${signed(entry.slope, 2)}`));
       button.addEventListener("click", () => {
         if (!this.off.delete(index)) this.off.add(index);
         button.setAttribute("aria-pressed", !this.off.has(index));
@@ -143,8 +144,10 @@ class Curves {
         svg("circle", { cx: pixel, cy: this.y.at(error), r: 4, style: `--ink: var(--ink-${index % 8})` })),
     );
     const unit = this.choice.across === "seconds" ? duration(x) : `${short(x)} samples`;
-    const rows = found.map(({ index, error }) =>
-      make("div", {}, make("i", { class: "dash", style: `--ink: var(--ink-${index % 8})` }), make("span", {}, this.entries[index].shown.name), make("b", {}, short(error))));
+    const rows = found.map(({ index, error }) => {
+      const dash = make("i", { class: "dash", style: `--ink: var(--ink-${index % 8})` });
+      return make("div", {}, dash, make("span", {}, this.entries[index].shown.name), make("b", {}, short(error)));
+    });
     this.tip.replaceChildren(make("strong", {}, unit), ...rows);
     this.tip.hidden = false;
     const isRight = pixel > (left + right) / 2;

@@ -3,70 +3,82 @@
 const DOUBLE_TAP_MS = 300;
 
 /** Turns pointers on `stage` into moves of `view`. Calls `changed` after each, and `pointed` with places. */
-function listenToGestures(stage, view, { changed, pointed }) {
-  const fingers = new Map();
-  let lastTap = { time: -Infinity, x: 0, y: 0 };
-  let travelled = 0;
-  const place = (event) => {
-    const box = stage.getBoundingClientRect();
-    return { x: event.clientX - box.left, y: event.clientY - box.top };
-  };
+class Gestures {
+  constructor(stage, view, { changed, pointed }) {
+    Object.assign(this, { stage, view, changed, pointed });
+    this.fingers = new Map();
+    this.lastTap = { time: -Infinity, x: 0, y: 0 };
+    this.travelled = 0;
+    this.isTouch = false;
+    stage.addEventListener("pointerdown", (event) => this.press(event));
+    stage.addEventListener("pointermove", (event) => this.move(event));
+    stage.addEventListener("pointerup", (event) => this.release(event));
+    stage.addEventListener("pointercancel", (event) => this.fingers.delete(event.pointerId));
+    stage.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && pointed(null));
+    // Some browsers send this after two taps as well, which `release` has answered already.
+    stage.addEventListener("dblclick", (event) => this.isTouch || this.zoomInOrBack(this.place(event)));
+    stage.addEventListener("wheel", (event) => this.turn(event), { passive: false });
+  }
 
-  const zoomInOrBack = ({ x, y }) => {
+  place(event) {
+    const box = this.stage.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  }
+
+  zoomInOrBack({ x, y }) {
+    const { view } = this;
     if (view.scale > view.fitScale * 1.01) view.fit();
     else view.zoom(Math.max(4 / view.scale, 2), x, y);
-    changed();
-  };
+    this.changed();
+  }
 
-  const pinch = (id, now) => {
-    const [other] = [...fingers].filter(([key]) => key !== id).map(([, at]) => at);
-    const before = fingers.get(id);
+  press(event) {
+    const { fingers } = this;
+    if (event.button > 0 || fingers.size > 1 || event.target.closest("button, .divider")) return;
+    this.stage.setPointerCapture(event.pointerId);
+    if (!fingers.size) this.travelled = 0;
+    this.isTouch = event.pointerType === "touch";
+    fingers.set(event.pointerId, this.place(event));
+    this.pointed(this.place(event));
+  }
+
+  move(event) {
+    const now = this.place(event);
+    this.pointed(now);
+    const before = this.fingers.get(event.pointerId);
+    if (!before) return;
+    this.travelled += Math.hypot(now.x - before.x, now.y - before.y);
+    if (this.fingers.size === 2) this.pinch(event.pointerId, before, now);
+    else this.view.pan(now.x - before.x, now.y - before.y);
+    this.fingers.set(event.pointerId, now);
+    this.changed();
+  }
+
+  pinch(id, before, now) {
+    const [other] = [...this.fingers].filter(([key]) => key !== id).map(([, at]) => at);
     const apart = (p) => Math.hypot(p.x - other.x, p.y - other.y);
     const middle = { x: (now.x + other.x) / 2, y: (now.y + other.y) / 2 };
-    view.pan((now.x - before.x) / 2, (now.y - before.y) / 2);
-    view.zoom(apart(now) / Math.max(apart(before), 1), middle.x, middle.y);
-  };
+    this.view.pan((now.x - before.x) / 2, (now.y - before.y) / 2);
+    this.view.zoom(apart(now) / Math.max(apart(before), 1), middle.x, middle.y);
+  }
 
-  const move = (event) => {
-    const now = place(event);
-    pointed(now);
-    const before = fingers.get(event.pointerId);
-    if (!before) return;
-    travelled += Math.hypot(now.x - before.x, now.y - before.y);
-    if (fingers.size === 2) pinch(event.pointerId, now);
-    else view.pan(now.x - before.x, now.y - before.y);
-    fingers.set(event.pointerId, now);
-    changed();
-  };
+  release(event) {
+    this.fingers.delete(event.pointerId);
+    if (event.pointerType !== "touch" || this.travelled > 8) return;
+    const { x, y } = this.place(event);
+    const near = Math.hypot(x - this.lastTap.x, y - this.lastTap.y) < 30;
+    if (near && event.timeStamp - this.lastTap.time < DOUBLE_TAP_MS) this.zoomInOrBack({ x, y });
+    this.lastTap = { time: event.timeStamp, x, y };
+  }
 
-  const release = (event) => {
-    if (!fingers.delete(event.pointerId) || event.type === "pointercancel") return;
-    if (event.pointerType !== "touch" || travelled > 8) return;
-    const { x, y } = place(event);
-    const near = Math.hypot(x - lastTap.x, y - lastTap.y) < 30;
-    if (near && event.timeStamp - lastTap.time < DOUBLE_TAP_MS) zoomInOrBack({ x, y });
-    lastTap = { time: event.timeStamp, x, y };
-  };
-
-  stage.addEventListener("pointerdown", (event) => {
-    if (event.button > 0 || fingers.size > 1 || event.target.closest("button, .divider")) return;
-    stage.setPointerCapture(event.pointerId);
-    if (!fingers.size) travelled = 0;
-    fingers.set(event.pointerId, place(event));
-    pointed(place(event));
-  });
-  stage.addEventListener("pointermove", move);
-  stage.addEventListener("pointerup", release);
-  stage.addEventListener("pointercancel", release);
-  stage.addEventListener("pointerleave", (event) => event.pointerType === "mouse" && pointed(null));
-  stage.addEventListener("dblclick", (event) => zoomInOrBack(place(event)));
-  stage.addEventListener("wheel", (event) => {
+  turn(event) {
     event.preventDefault();
-    const lines = event.deltaMode ? 16 : 1;
-    const { x, y } = place(event);
-    view.zoom(2 ** (-Math.max(Math.min(event.deltaY * lines, 200), -200) / 200), x, y);
-    changed();
-  }, { passive: false });
+    // Touchpads send pinches as small turns of the wheel with Ctrl.
+    const lines = event.deltaMode ? 16 : event.ctrlKey ? 4 : 1;
+    const { x, y } = this.place(event);
+    this.view.zoom(2 ** (-Math.max(Math.min(event.deltaY * lines, 200), -200) / 200), x, y);
+    this.changed();
+  }
 }
 
 /** Lets the divider be dragged and moved by keys; `move` gets its place in [0, 1]. */

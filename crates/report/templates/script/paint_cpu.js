@@ -19,7 +19,8 @@ function blockMean(image, [x0, x1], [y0, y1]) {
   const sum = [0, 0, 0];
   for (let y = y0; y < y1; y++)
     for (let x = x0; x < x1; x++)
-      for (let c = 0, k = (y * width + x) * channels; c < channels; c++, k++) sum[c] += table ? table[data[k]] : data[k];
+      for (let c = 0, k = (y * width + x) * channels; c < channels; c++, k++)
+        sum[c] += table ? table[data[k]] : data[k];
   const count = (x1 - x0) * (y1 - y0);
   return sum.map((s) => s / count);
 }
@@ -31,7 +32,8 @@ function shadeBlock(layer, xs, ys) {
   const rgb = blockMean(image, xs, ys);
   if (mode === "relative" && reference) {
     const error = relativeError(rgb, blockMean(reference, xs, ys), floorOf(reference));
-    return Number.isFinite(error) ? SIGNED_TABLE[Math.round(127.5 * (1 + Math.min(Math.max(error, -1), 1)))] : [255, 0, 255];
+    if (!Number.isFinite(error)) return [255, 0, 255];
+    return SIGNED_TABLE[Math.round(127.5 * (1 + Math.min(Math.max(error, -1), 1)))];
   }
   return develop(rgb, gain, tone);
 }
@@ -82,6 +84,7 @@ class CpuPainter {
 
   paint(layers, view, ratio) {
     const scaled = { x: view.x, y: view.y, scale: view.scale * ratio };
-    for (const layer of layers) if (layer.to > layer.from) paintBlocks(this.canvas, layer, scaled, [layer.from, layer.to]);
+    for (const layer of layers)
+      if (layer.to > layer.from) paintBlocks(this.canvas, layer, scaled, [layer.from, layer.to]);
   }
 }

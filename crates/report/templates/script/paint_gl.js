@@ -5,7 +5,8 @@ const CORNERS = `#version 300 es
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }`;
 
 const floats = (list) => list.map((v) => v.toFixed(9)).join(", ");
-const rampCode = (name, stops) => `vec3[](${stops.map((hex) => `vec3(${floats(channelsOf(hex).map((c) => c / 255))})`).join(", ")})`;
+const colourCode = (hex) => `vec3(${floats(channelsOf(hex).map((c) => c / 255))})`;
+const rampCode = (stops) => `vec3[](${stops.map(colourCode).join(", ")})`;
 
 const SHADE = `#version 300 es
 precision highp float;
@@ -44,14 +45,14 @@ vec3 encode(vec3 c) {
 }
 
 vec3 magma(float at) {
-  vec3 stops[${MAGMA.length}] = ${rampCode("magma", MAGMA)};
+  vec3 stops[${MAGMA.length}] = ${rampCode(MAGMA)};
   float place = clamp(at, 0.0, 1.0) * ${MAGMA.length - 1}.0;
   int low = min(int(place), ${MAGMA.length - 2});
   return mix(stops[low], stops[low + 1], place - float(low));
 }
 
 vec3 signedRamp(float at) {
-  vec3 stops[${SIGNED.length}] = ${rampCode("signed", SIGNED)};
+  vec3 stops[${SIGNED.length}] = ${rampCode(SIGNED)};
   float place = clamp(at * 0.5 + 0.5, 0.0, 1.0) * ${SIGNED.length - 1}.0;
   int low = min(int(place), ${SIGNED.length - 2});
   return mix(stops[low], stops[low + 1], place - float(low));
@@ -123,7 +124,8 @@ class GlPainter {
     gl.bindTexture(gl.TEXTURE_2D, known.texture);
     if (known.version === image.version) return;
     const [inside, format, type] = this.format(image);
-    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER])
+      gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
     gl.texImage2D(gl.TEXTURE_2D, 0, inside, image.width, image.height, 0, format, type, image.data);
     known.version = image.version;
   }

@@ -53,7 +53,8 @@ class Pyramid {
       .sort((a, b) => a.s - b.s);
     const isMember = ({ s, t }) => s + t - 1 === length;
     const edges = `${length} edge${length === 1 ? "" : "s"}`;
-    const heading = make("button", { type: "button", class: "plain tier-name", "aria-pressed": true, title: `Switch all paths of ${edges}` }, edges);
+    const title = `Switch all paths of ${edges}`;
+    const heading = make("button", { type: "button", class: "plain tier-name", "aria-pressed": true, title }, edges);
     heading.addEventListener("click", () => this.turn(isMember, !this.isOn(isMember)));
     const cells = members.map((strategy) => this.cell(strategy));
     const tier = make("div", { class: "tier" }, heading, make("div", { class: "cells" }, ...cells));
@@ -128,7 +129,10 @@ class Pyramid {
   }
 
   images() {
-    this.shown ??= [{ name: "sum", key: "1", label: "Sum of what is switched on" }, { name: "", key: "2", label: "The chosen strategy" }];
+    this.shown ??= [
+      { name: "sum", key: "1", label: "Sum of what is switched on" },
+      { name: "", key: "2", label: "The chosen strategy" },
+    ];
     return this.shown;
   }
 
@@ -179,6 +183,10 @@ async function openPyramid(data) {
     });
   });
   viewer.open(pyramid.images(), 0);
+  const words = new URLSearchParams(location.hash.slice(1));
+  const names = [words.get("image"), words.get("split")];
+  const named = data.strategies.findIndex((strategy) => names.includes(nameOf(strategy)));
+  if (named >= 0) pyramid.choose(named, 0);
   keepAddress(viewer);
   return { viewer, pyramid };
 }

@@ -34,7 +34,8 @@ function bestOf(entries, column) {
 
 function tableRow(entry, index, columns, best) {
   const button = make("button", { type: "button", class: "plain" }, entry.shown.name);
-  const name = make("th", { scope: "row" }, make("i", { class: "dot", style: `--ink: var(--ink-${index % 8})` }), button);
+  const dot = make("i", { class: "dot", style: `--ink: var(--ink-${index % 8})` });
+  const name = make("th", { scope: "row" }, dot, button);
   if (entry.label && entry.label !== entry.shown.name) name.append(make("small", {}, entry.label));
   const cells = columns.map((column) => {
     const value = numberOf(entry, column);

@@ -32,7 +32,7 @@ class Viewer {
     listenToControls(this);
     listenToKeys(this);
     const { stage, divider } = this.parts;
-    listenToGestures(stage, this.view, {
+    new Gestures(stage, this.view, {
       changed: () => this.changed(),
       pointed: (place) => {
         this.pointer = place;
@@ -152,15 +152,21 @@ class Viewer {
     const { divider, split, image } = this.state;
     const isRight = split !== null && this.pointer.x > divider * this.view.stage.width;
     const shown = this.images[isRight ? split : image];
-    const cells = [make("span", { class: "place" }, `${target.x}, ${target.y}`), valueCell(shown.name, shown.pixels, target)];
-    if (this.reference && this.reference !== shown) cells.push(valueCell("reference", this.reference.pixels, target));
-    if (shown.flip) cells.push(make("span", {}, make("i", {}, "FLIP"), short(pixelAt(shown.flip, target.x, target.y)[0])));
+    const place = make("span", { class: "place" }, `${target.x}, ${target.y}`);
+    const cells = [place, valueCell(shown.name, shown.pixels, target)];
+    const { reference } = this;
+    if (reference && reference !== shown) cells.push(valueCell("reference", reference.pixels, target));
+    if (shown.flip) {
+      const [error] = pixelAt(shown.flip, target.x, target.y);
+      cells.push(make("span", {}, make("i", {}, "FLIP"), short(error)));
+    }
     this.parts.readout.replaceChildren(...cells, zoom);
   }
 }
 
 /** A name and the three linear values of a pixel. */
 function valueCell(name, pixels, { x, y }) {
-  const values = pixelAt(pixels, x, y).map((value, c) => make("b", { class: "rgb"[c] }, Number.isNaN(value) ? "NaN" : short(value)));
+  const write = (value) => (Number.isNaN(value) ? "NaN" : short(value));
+  const values = pixelAt(pixels, x, y).map((value, c) => make("b", { class: "rgb"[c] }, write(value)));
   return make("span", {}, make("i", {}, name), ...values);
 }

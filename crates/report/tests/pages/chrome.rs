@@ -1,7 +1,7 @@
 //! A small client of Chromium's DevTools protocol: one browser, its pages, what they complain about.
 
 use std::ffi::OsString;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -47,7 +47,9 @@ impl Browser {
     /// Starts a browser, or says that there is none.
     pub fn start(flags: &[&str]) -> Option<Self> {
         let Some(program) = find() else {
-            eprintln!("no Chromium in CHROMIUM or PATH: the pages are not tested");
+            // Written past the test runner, which keeps to itself what passing tests print.
+            let notice = "no Chromium in CHROMIUM or PATH: the pages are not tested in a browser";
+            let _ = writeln!(std::io::stderr(), "{notice}");
             return None;
         };
         let profile = tempfile::tempdir().unwrap();
@@ -264,6 +266,17 @@ impl Page<'_> {
             self.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points }));
         }
         self.call("Input.dispatchTouchEvent", json!({ "type": "touchEnd", "touchPoints": [] }));
+        self.settle();
+    }
+
+    pub fn tap_twice(&mut self, at: [f64; 2]) {
+        // Two taps that follow each other slowly are no double tap.
+        std::thread::sleep(Duration::from_millis(400));
+        for _ in 0..2 {
+            let point = json!([{ "x": at[0], "y": at[1] }]);
+            self.call("Input.dispatchTouchEvent", json!({ "type": "touchStart", "touchPoints": point }));
+            self.call("Input.dispatchTouchEvent", json!({ "type": "touchEnd", "touchPoints": [] }));
+        }
         self.settle();
     }
 

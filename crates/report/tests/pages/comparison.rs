@@ -97,7 +97,8 @@ fn check_colours(page: &mut Page) {
     page.key("e");
     page.key("e");
     assert_near(colour(page, [5.0, 40.0]), grey(0.2));
-    let slide = "(() => { const s = caustica.viewer.parts.exposure; s.value = -1.5; s.dispatchEvent(new Event('input')); })()";
+    let slide = "(() => { const s = caustica.viewer.parts.exposure; s.value = -1.5;
+                   s.dispatchEvent(new Event('input')); })()";
     page.eval(slide);
     page.settle();
     assert_near(
@@ -166,7 +167,8 @@ fn check_split(page: &mut Page) {
     assert_near(colour(page, [5.0, 40.0]), grey(0.1));
     assert_near(colour(page, [60.0, 40.0]), grey(0.4));
     let grip = page.eval(
-        "(() => { const b = document.querySelector('.divider').getBoundingClientRect(), s = caustica.viewer.parts.stage.getBoundingClientRect();
+        "(() => { const b = document.querySelector('.divider').getBoundingClientRect();
+           const s = caustica.viewer.parts.stage.getBoundingClientRect();
            return [b.left + b.width / 2, b.top + b.height / 2, s.left, s.width]; })()",
     );
     let [x, y, left, width] = [0, 1, 2, 3].map(|i| grip[i].as_f64().unwrap());
@@ -203,7 +205,8 @@ fn check_rest(page: &mut Page) {
     );
     page.eval("document.querySelector('.plot').scrollIntoView()");
     let middle = page.eval(
-        "(() => { const b = document.querySelector('.plot').getBoundingClientRect(); return [b.left + b.width / 2, b.top + b.height / 2]; })()",
+        "(() => { const b = document.querySelector('.plot').getBoundingClientRect();
+           return [b.left + b.width / 2, b.top + b.height / 2]; })()",
     );
     page.hover([middle[0].as_f64().unwrap(), middle[1].as_f64().unwrap()]);
     let tip = page.text(".tip");
@@ -276,6 +279,10 @@ fn fingers_move_and_zoom() {
         page.swipe(&[[x, y]], &[[x - 60.0, y]]);
         let moved = page.number("caustica.viewer.view.x") - before;
         assert!((moved * scale - 60.0).abs() < 15.0, "{moved}");
+        for expected in [fit, 4.0_f64.max(2.0 * fit)] {
+            page.tap_twice([x, y]);
+            assert!((page.number("caustica.viewer.view.scale") - expected).abs() < 1e-6, "{expected}");
+        }
         page.key("h");
         check_split(&mut page);
         assert_eq!(page.complaints(), [""; 0]);
@@ -294,11 +301,12 @@ fn addresses_bring_back_what_was_seen() {
     page.wait("location.hash.includes('divider')");
     let address = page.eval("location.href").as_str().unwrap().to_owned();
     let again = browser.open_address(&address, LAPTOP).eval(
-        "(({ state, view }) => [state.image, state.stops, state.tone, state.mode, state.split, state.divider, view.x, view.scale])(caustica.viewer)",
+        "(({ state: s, view }) =>
+           [s.image, s.stops, s.tone, s.mode, s.split, s.divider, view.x, view.scale])(caustica.viewer)",
     );
     assert_eq!(again, serde_json::json!([1, -2.5, "agx", "flip", 2, 0.25, 12.5, 30]));
     let odd =
-        format!("file://{}#image=nobody&zoom=-3&at=x,y&stops=abc&tone=no&show=&split=%20", file.display());
+        format!("file://{}#image=nobody&zoom=-3&at=3,3&stops=abc&tone=no&show=&split=%20", file.display());
     let mut page = browser.open_address(&odd, LAPTOP);
     assert!(page.eval("caustica.viewer.view.fitted").as_bool().unwrap());
     assert_eq!(page.complaints(), [""; 0]);

@@ -9,8 +9,13 @@ use serde_json::json;
 use crate::chrome::{Browser, Device, Page};
 use crate::{LAPTOP, PHONE, sample};
 
+/// Where pictures are kept, if anyone wants them.
+fn album() -> Option<PathBuf> {
+    std::env::var_os("CAUSTICA_SCREENSHOTS").map(PathBuf::from)
+}
+
 fn keep(page: &mut Page, name: &str) {
-    let Some(folder) = std::env::var_os("CAUSTICA_SCREENSHOTS").map(PathBuf::from) else { return };
+    let Some(folder) = album() else { return };
     fs::create_dir_all(&folder).unwrap();
     for (kind, how) in [("window", json!({})), ("whole", json!({ "captureBeyondViewport": true }))] {
         let mut how = how;
@@ -27,7 +32,7 @@ fn keep(page: &mut Page, name: &str) {
 
 /// Nothing may be wider than the window, and text must stand out from its ground.
 fn check(page: &mut Page, device: Device) {
-    let wide = page.number("document.documentElement.scrollWidth - innerWidth");
+    let wide = page.number("document.documentElement.scrollWidth") - f64::from(device.width);
     assert!(wide <= 0.0, "{device:?}: the page is {wide} pixels too wide");
     let light = |property: &str| {
         format!(
@@ -55,7 +60,16 @@ fn sample_pages_fit_their_windows() {
                 check(&mut page, device);
                 let shade = if dark { "dark" } else { "light" };
                 let name = file.file_stem().unwrap().to_string_lossy();
-                keep(&mut page, &format!("{name}-{}-{shade}", device.name));
+                let name = format!("{name}-{}-{shade}", device.name);
+                keep(&mut page, &name);
+                if album().is_none() {
+                    continue;
+                }
+                for (state, keys) in [("split", "s"), ("flip", "sm"), ("relative", "m"), ("help", "m?")] {
+                    keys.chars().for_each(|key| page.key(&key.to_string()));
+                    keep(&mut page, &format!("{name}-{state}"));
+                }
+                check(&mut page, device);
             }
         }
     }

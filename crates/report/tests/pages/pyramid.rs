@@ -83,10 +83,20 @@ fn check_large(page: &mut Page) {
     assert_near(page.colour(at), [1.0, 0.5, 0.25].map(|c| byte(2.0 * c * share(2, 2, 100))));
     // Thumbnails follow the exposure. Cells are told by their place: (2, 2) is the third of the third tier.
     page.settle();
-    let pixel = "[...document.querySelectorAll('.tier:nth-child(3) canvas')[2].getContext('2d').getImageData(4, 3, 1, 1).data]";
+    let pixel = "[...document.querySelectorAll('.tier:nth-child(3) canvas')[2]
+        .getContext('2d').getImageData(4, 3, 1, 1).data]";
     let thumbnail = page.eval(pixel);
     assert_eq!(thumbnail[0], byte(2.0 * share(2, 2, 100)), "{thumbnail}");
     page.eval("caustica.viewer.set({ stops: 0 })");
+}
+
+/// However far the tiers are scrolled, the picture is seen.
+fn check_sight(page: &mut Page) {
+    page.eval("document.querySelector('.tier:last-child').scrollIntoView({ block: 'end' })");
+    page.settle();
+    let top = page.number("caustica.viewer.parts.stage.getBoundingClientRect().top");
+    assert!(top >= 0.0, "{top}");
+    page.eval("scrollTo(0, 0)");
 }
 
 #[test]
@@ -101,6 +111,11 @@ fn switches_change_the_sum() {
         assert_eq!(page.number("document.querySelectorAll('.tier').length"), 3.0);
         check_switches(&mut page);
         check_large(&mut page);
+        check_sight(&mut page);
         assert_eq!(page.complaints(), [""; 0], "{device:?}");
     }
+    let address = format!("file://{}#image=s+%3D+1%2C+t+%3D+2&stops=1", file.display());
+    let mut page = browser.open_address(&address, LAPTOP);
+    assert_eq!(page.text("[data-part=tag-left]"), "s = 1, t = 2");
+    assert_eq!(page.number("caustica.viewer.state.stops"), 1.0);
 }
