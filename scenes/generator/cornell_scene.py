@@ -3,7 +3,7 @@
 from .cornell import colours
 
 # Luminance of the lamp: the published spectrum has no absolute unit.
-LUMINANCE = 12.0
+LUMINANCE = 20.0
 
 HEAD = """<?xml version="1.0" encoding="utf-8"?>
 <!-- Written by scenes/generate.py. The Cornell box as Cornell's Program of Computer Graphics measured it, in metres.

@@ -33,7 +33,7 @@ def quad(about):
 
 def glass():
     """A table before a wall that turns a corner on the right; dark behind the camera."""
-    low, high = (-2.6, 0, -1.3), (1.9, 3.2, 4)
+    low, high = (-2.6, 0, -1.7), (1.7, 3.2, 5)
     return {
         "table": room("The table.", low, high, ("-y",)),
         "wall": room("The walls behind, and on the right.", low, high, ("-z", "+x")),
@@ -44,7 +44,7 @@ def glass():
 
 def inverted():
     """A box as Cornell's, a little wider, closed."""
-    low, high = (-1.3, 0, -1), (1.3, 2, 3.4)
+    low, high = (-1.3, 0, -1), (1.3, 2, 4.6)
     return {
         "white": room("Floor, ceiling, back.", low, high, ("-y", "+y", "-z")),
         "left": room("The wall on the left.", low, high, ("-x",)),
@@ -54,36 +54,33 @@ def inverted():
     }
 
 
+# The opening in the ceiling of `long-way` (x and z), its height, and how far the shaft leads, which leans.
+OPENING = ((-1.3, -0.2), (-1.1, 0.0))
+CEILING = 2.0
+SHAFT = (-2.5, 7.0, -1.9)
+
+
 def long_way():
-    """A room with a doorway to a passage that bends; the lamp is around the bend."""
-    hall = Mesh("The room, but for its floor; its back wall has a doorway.")
-    low, high = (-1.6, 0, -1), (1.6, 2, 3.2)
-    for face in ("-x", "+x", "+y", "+z"):
-        add_room(hall, low, high, face)
-    wall_with_doorway(hall, (low, high), (-0.85, 0.05), 1.5)
-    passage = Mesh("The passage, but for its floor.")
-    add_room(passage, (-0.85, 0, -6.6), (0.05, 1.5, -1), "-x", "+y", "-z")
-    add_room(passage, (-0.85, 0, -5.6), (0.05, 1.5, -1), "+x")
-    add_room(passage, (0.05, 0, -6.6), (3.05, 1.5, -5.6), "+x", "+y", "-z", "+z")
-    floor = Mesh("All floors.")
-    add_room(floor, low, high, "-y")
-    add_room(floor, (-0.85, 0, -6.6), (0.05, 1.5, -1), "-y")
-    add_room(floor, (0.05, 0, -6.6), (3.05, 1.5, -5.6), "-y")
-    plinth = box("What the ball stands on.", (-0.34, 0, -0.06), (0.34, 0.42, 0.62), ("-x", "+x", "+y", "-z", "+z"))
-    return {"hall": hall, "passage": passage, "floor": floor, "plinth": plinth, "quad": quad("A square, facing z.")}
+    """A room under a long shaft that leans, with a lamp at its upper end."""
+    low, high = (-1.6, 0, -1.3), (1.6, CEILING, 4.2)
+    hall = room("The room, but for its floor.", low, high, ("-x", "+x", "-z", "+z"))
+    (x0, x1), (z0, z1) = OPENING
+    for a, b, c, d in ((low[0], high[0], low[2], z0), (low[0], high[0], z1, high[2]),
+                       (low[0], x0, z0, z1), (x1, high[0], z0, z1)):
+        hall.polygon([(a, CEILING, c), (b, CEILING, c), (b, CEILING, d), (a, CEILING, d)])
+    rim = [(x0, CEILING, z0), (x0, CEILING, z1), (x1, CEILING, z1), (x1, CEILING, z0)]
+    top = [tuple(c + s for c, s in zip(p, SHAFT)) for p in rim]
+    shaft = Mesh("The walls of the shaft, seen from inside.")
+    for i, j in ((0, 1), (1, 2), (2, 3), (3, 0)):
+        shaft.polygon([rim[j], rim[i], top[i], top[j]])
+    lamp = Mesh("The lamp at the upper end of the shaft, facing down.").polygon(top[::-1])
+    return {"hall": hall, "shaft": shaft, "lamp": lamp, "floor": room("The floor.", low, high, ("-y",))}
 
 
 def add_room(mesh, low, high, *faces):
     """Adds walls, seen from inside."""
     for polygon in room("", low, high, faces).faces_as_points():
         mesh.polygon(polygon)
-
-
-def wall_with_doorway(mesh, ends, opening, height):
-    """Adds a wall at the far end, facing z, with an opening between two x as high as `height`."""
-    (x0, y0, z), (x1, y1, _) = ends
-    for left, right, low in ((x0, opening[0], y0), (opening[0], opening[1], height), (opening[1], x1, y0)):
-        mesh.polygon([(left, low, z), (right, low, z), (right, y1, z), (left, y1, z)])
 
 
 def gap():
@@ -98,9 +95,9 @@ def gap():
     far = Mesh("The room beyond.")
     add_room(far, (-1.9, 0, -3), (1.7, 2.3, -0.1), "-x", "+x", "+y", "-z")
     floor = room("The floors.", (-1.9, 0, -3), (1.7, 2.3, 4.2), ("-y",))
-    door = Mesh("The door, hinged on the right, open by 14 degrees.")
+    door = Mesh("The door, hinged on the right, open by 22 degrees.")
     slab = box("", (-0.79, 0.005, -0.05), (0, 1.895, 0))
-    angle = radians(14)
+    angle = radians(22)
     for polygon in slab.faces_as_points():
         door.polygon([(0.895 + x * cos(angle) - z * sin(angle), y, -0.02 + x * sin(angle) + z * cos(angle))
                       for x, y, z in polygon])
@@ -109,7 +106,7 @@ def gap():
 
 def bulb():
     """A table before a wall, in a closed room."""
-    low, high = (-3, 0, -1.5), (3, 4, 5)
+    low, high = (-3.2, 0, -2.6), (3.2, 4, 5)
     books = {f"book-{i + 1}": box("A book.", a, b) for i, (a, b) in enumerate(BOOKS)}
     return {
         "table": room("The table.", low, high, ("-y",)),

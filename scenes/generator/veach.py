@@ -6,11 +6,11 @@ EYE = (0.0, 1.6, 13.0)
 LAMPS_Y, LAMPS_Z = 2.3, -1.2
 
 # Radii and colours of the lamps; all have about the same power.
-LAMPS = ((-3.3, 0.04, (0.55, 0.75, 1.0)), (-1.2, 0.12, (0.80, 0.92, 1.0)), (1.05, 0.34, (1.0, 0.82, 0.55)),
-         (3.5, 0.85, (1.0, 0.62, 0.30)))
+LAMPS = ((-3.3, 0.04, (0.35, 0.60, 1.0)), (-1.2, 0.12, (0.35, 0.95, 0.75)), (1.05, 0.34, (1.0, 0.45, 0.60)),
+         (3.5, 0.85, (1.0, 0.66, 0.28)))
 # Roughness, and the middle of each plate (y, z).
 PLATES = ((0.008, 0.42, -0.5), (0.03, -0.28, 0.75), (0.09, -0.85, 2.15), (0.22, -1.32, 3.7))
-POWER = 16.0
+POWER = 34.0
 
 HEAD = """<?xml version="1.0" encoding="utf-8"?>
 <!-- Written by scenes/generate.py. Lamps of different size, seen in plates of different roughness: small lamps in
@@ -32,7 +32,7 @@ HEAD = """<?xml version="1.0" encoding="utf-8"?>
 
 	<mesh type="obj">
 		<string name="filename" value="meshes/floor.obj"/>
-		<bsdf type="diffuse"><color name="albedo" value="0.24, 0.25, 0.27"/></bsdf>
+		<bsdf type="diffuse"><color name="albedo" value="0.36, 0.37, 0.40"/></bsdf>
 	</mesh>
 """
 
