@@ -112,10 +112,12 @@ def bulb():
         "table": room("The table.", low, high, ("-y",)),
         "wall": room("The wall.", low, high, ("-z",)),
         "rest": room("The rest of the room.", low, high, ("-x", "+x", "+y", "+z")),
+        "window": Mesh("A window in the wall on the left.").polygon(WINDOW),
         "block": box("The block of wood that holds the bulb.", (-0.34, 0, -0.34), (0.34, 0.3, 0.34)),
         **books,
     }
 
 
+WINDOW = ((-3.19, 1, 1.6), (-3.19, 1, -0.4), (-3.19, 3, -0.4), (-3.19, 3, 1.6))
 BOOKS = (((-0.75, 0.0, -0.5), (0.75, 0.16, 0.5)), ((-0.68, 0.161, -0.45), (0.68, 0.29, 0.45)),
          ((-0.56, 0.291, -0.4), (0.56, 0.46, 0.4)))
