@@ -1,5 +1,7 @@
 //! Surfaces as rays find them: flat tables of corners and triangles, and the points that are hit.
 
+mod border;
+
 use caustica_math::elementary::{asin, atan2};
 use caustica_math::{Frame, Transform, Vec2, Vec3};
 
@@ -291,27 +293,6 @@ impl Surfaces {
             None => self.triangle_shapes[primitive as usize],
             Some(sphere) => self.spheres[sphere].shape,
         }
-    }
-
-    /// Whether a mesh has an edge that does not belong to exactly two triangles that run along it in opposite
-    /// directions. Corners at the same place count as one.
-    pub fn has_border(&self, shape: usize) -> bool {
-        let flat = &self.shapes[shape];
-        let triangles = flat.first_primitive..flat.first_primitive + flat.primitive_count;
-        if self.sphere(flat.first_primitive).is_some() {
-            return false;
-        }
-        let key = |v: u32| self.positions[v as usize].to_array().map(|c| (c + 0.0).to_bits());
-        let mut edges: Vec<([[u32; 3]; 2], bool)> = triangles
-            .flat_map(|t| {
-                let [a, b, c] = self.triangles[t as usize];
-                [(a, b), (b, c), (c, a)]
-            })
-            .map(|(a, b)| (key(a), key(b)))
-            .map(|(a, b)| if a < b { ([a, b], true) } else { ([b, a], false) })
-            .collect();
-        edges.sort_unstable();
-        edges.chunk_by(|a, b| a.0 == b.0).any(|e| e.iter().filter(|x| x.1).count() * 2 != e.len())
     }
 
     /// How many bytes the tables take.

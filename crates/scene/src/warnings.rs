@@ -20,22 +20,24 @@ pub(crate) fn check(scene: &Scene, description: &Description, warnings: &mut Vec
     bright_albedos(description, warnings);
 }
 
-/// A dielectric mesh that is not closed refracts light into a medium that it never leaves.
+/// A dielectric mesh that is not closed, alone or by others, refracts light into a medium that it never leaves.
 fn open_dielectrics(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
-    for (index, shape) in description.shapes.iter().enumerate() {
-        let kind = &description.materials[shape.material.0 as usize].kind;
-        let transparent =
-            matches!(kind, MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. });
-        if transparent && scene.surfaces().has_border(index) {
-            warnings.push(
-                Diagnostic::warning(format!(
-                    "{} is transparent but not closed: what is behind its border counts as inside",
-                    shape.name
-                ))
-                .at(shape.origin.clone())
-                .hint("close the mesh, with its normals outward, or give it another material"),
-            );
-        }
+    let transparent = |index: &usize| {
+        let material = description.shapes[*index].material;
+        let kind = &description.materials[material.0 as usize].kind;
+        matches!(kind, MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. })
+    };
+    let shapes: Vec<usize> = (0..description.shapes.len()).filter(transparent).collect();
+    for index in scene.surfaces().unclosed(&shapes) {
+        let shape = &description.shapes[index];
+        warnings.push(
+            Diagnostic::warning(format!(
+                "{} is transparent but not closed: what is behind its border counts as inside",
+                shape.name
+            ))
+            .at(shape.origin.clone())
+            .hint("close the mesh, with its normals outward, or give it another material"),
+        );
     }
 }
 

@@ -270,6 +270,25 @@ fn dielectrics_that_are_not_closed() {
     assert!(warnings(closed).is_empty());
 }
 
+/// Such as the glass, the water and the air of a glass of water, which meet in a ring.
+#[test]
+fn dielectrics_that_close_each_other() {
+    let warned = |holes: usize| {
+        warnings(|d| {
+            let glass = build::glass(d);
+            let mut part = closed_seam(build::ellipsoid(4, [0.1; 3]));
+            let mut rest = part.clone();
+            rest.triangles = part.triangles.split_off(20);
+            rest.triangles.truncate(rest.triangles.len() - holes);
+            build::add(d, "part", Geometry::Mesh(part), glass);
+            build::add(d, "rest", Geometry::Mesh(rest), glass);
+        })
+    };
+    assert!(warned(0).is_empty());
+    let w = warned(1);
+    assert!(w.len() == 1 && w[0].starts_with("rest is transparent but not closed"), "{w:?}");
+}
+
 /// Joins the corners along the seam and at the poles, which sines and cosines put a little apart.
 fn closed_seam(mut m: Mesh) -> Mesh {
     for p in &mut m.positions {
