@@ -25,7 +25,7 @@ pub struct Device {
 
 /// The browser named by CHROMIUM, or one from PATH.
 fn find() -> Option<PathBuf> {
-    if let Some(named) = std::env::var_os("CHROMIUM") {
+    if let Some(named) = std::env::var_os("CHROMIUM").filter(|name| !name.is_empty()) {
         return Some(named.into());
     }
     let path = std::env::var_os("PATH")?;
