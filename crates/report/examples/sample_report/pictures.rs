@@ -8,7 +8,7 @@ use caustica_report::{
 
 /// Five noisy images of hills and what they should look like.
 pub fn comparison(width: u32, height: u32) -> Comparison {
-    let size = [width.div_ceil(9), height.div_ceil(9)];
+    let size = [width.div_ceil(4), height.div_ceil(4)];
     let truth = picture(width, height, |_, colour| colour);
     let methods = [
         ("naive", "emission found by chance", 1.6, 300.0),
@@ -40,8 +40,8 @@ pub fn comparison(width: u32, height: u32) -> Comparison {
         insets: vec![
             Inset {
                 label: "The sun".into(),
-                x: 7 * width / 16,
-                y: height / 5,
+                x: 3 * width / 8,
+                y: height / 7,
                 width: size[0],
                 height: size[1],
             },

@@ -25,7 +25,7 @@ pub struct Device {
 
 /// The browser named by CHROMIUM, or one from PATH.
 fn find() -> Option<PathBuf> {
-    if let Some(named) = std::env::var_os("CHROMIUM") {
+    if let Some(named) = std::env::var_os("CHROMIUM").filter(|name| !name.is_empty()) {
         return Some(named.into());
     }
     let path = std::env::var_os("PATH")?;
@@ -169,7 +169,8 @@ impl Page<'_> {
     /// Loads an address and waits until the page is ready.
     fn go(&mut self, address: &str) {
         self.call("Page.navigate", json!({ "url": address }));
-        self.wait("document.readyState === 'complete' && (window.caustica || !document.querySelector('#trouble').hidden)");
+        let trouble = "!document.querySelector('#trouble').hidden";
+        self.wait(&format!("document.readyState === 'complete' && (window.caustica || {trouble})"));
         self.settle();
     }
 
@@ -205,7 +206,10 @@ impl Page<'_> {
 
     /// Waits until what was changed is painted.
     pub fn settle(&mut self) {
-        self.eval("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 20))))");
+        self.eval(
+            "new Promise(done =>
+               requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 20))))",
+        );
     }
 
     /// Presses a key, such as "1", "R" or "ArrowLeft".
