@@ -9,6 +9,7 @@ use caustica::film::{Develop, check_writable};
 use caustica::session::integrator_name;
 use caustica::{RenderOptions, Scene, Settings, Vec3};
 use caustica_clips::{ClipError, ClipOptions, Converge, Orbit, PyramidClip, Step, converge, orbit, pyramid};
+use caustica_video::VideoError;
 use serde::Serialize;
 
 use crate::args::{self, Clip, Video};
@@ -113,6 +114,7 @@ fn failure(e: ClipError) -> Failure {
     match e {
         ClipError::Render(e) => e.into(),
         ClipError::Camera(d) => Failure::Input(*d),
+        ClipError::Video(e @ VideoError::Size { .. }) => Failure::Usage(e.to_string()),
         ClipError::Stopped => Failure::Machine(e.to_string()),
         other => Failure::Output(format!("cannot make the video: {other}")),
     }

@@ -9,7 +9,7 @@ use caustica_scene::Scene;
 use caustica_video::{Corner, Summary, caption, cross_fade, label, side_by_side, sweep, toggle, wipe};
 use libm::{pow, round};
 
-use crate::reel::{ClipError, ClipOptions, Reel, Step, check};
+use crate::reel::{ClipError, ClipOptions, Reel, Step, size_of};
 
 /// How the picture with its light image and that without share the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -63,10 +63,11 @@ pub fn converge(
     control: &Control,
     progress: impl FnMut(Step),
 ) -> Result<Summary, ClipError> {
-    check(&options.path)?;
-    let session = Session::new(scene, what.render.clone())?;
     let (frames, held) = (options.frames(), options.frames_of(what.hold));
-    let mut reel = Reel::new(options, control, frames + held, progress);
+    let [width, height] = size_of(scene);
+    let size = [if what.layout == Layout::Side { width.saturating_mul(2) } else { width }, height];
+    let mut reel = Reel::new(options, control, (size, frames + held), progress)?;
+    let session = Session::new(scene, what.render.clone())?;
     let (mut seconds, mut samples) = (0.0, 0);
     let mut shown: Option<Shown> = None;
     for frame in 0..frames {

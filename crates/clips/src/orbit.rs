@@ -11,7 +11,7 @@ use caustica_transport::Settings;
 use caustica_video::{Summary, caption};
 use libm::sin;
 
-use crate::reel::{ClipError, ClipOptions, Reel, Step, check};
+use crate::reel::{ClipError, ClipOptions, Reel, Step, size_of};
 
 /// How the camera moves.
 #[derive(Clone, Debug)]
@@ -37,9 +37,8 @@ pub fn orbit(
     control: &Control,
     progress: impl FnMut(Step),
 ) -> Result<Summary, ClipError> {
-    check(&options.path)?;
     let before = scene.camera.clone();
-    let mut reel = Reel::new(options, control, options.frames(), progress);
+    let mut reel = Reel::new(options, control, (size_of(scene), options.frames()), progress)?;
     let swung = swing(scene, (camera, what), options, (control, &mut reel));
     scene.camera = before;
     swung.and_then(|()| reel.finish())

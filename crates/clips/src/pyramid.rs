@@ -9,7 +9,7 @@ use caustica_scene::Scene;
 use caustica_video::{Corner, Summary, caption, cross_fade, label, side_by_side};
 
 use crate::converge::duration;
-use crate::reel::{ClipError, ClipOptions, Reel, Step, check};
+use crate::reel::{ClipError, ClipOptions, Reel, Step, size_of};
 
 /// What is summed.
 #[derive(Clone, Debug)]
@@ -37,16 +37,17 @@ pub fn pyramid(
     rendering: impl FnMut(&Progress),
     progress: impl FnMut(Step),
 ) -> Result<Summary, ClipError> {
-    check(&options.path)?;
+    let size = size_of(scene);
+    // The longer paths are a step too.
+    let strategies = (1..=what.rows).map(|edges| edges + 1).sum::<u32>();
+    let (each, held) = ((options.frames() / (strategies + 1)).max(2), options.frames_of(what.hold));
+    let frames = each * (strategies + 1) + held;
+    let double = [size[0].saturating_mul(2), size[1]];
+    let mut reel = Reel::new(options, control, (double, frames), progress)?;
     let pyramid = Pyramid::new(scene, what.render.clone(), what.rows)?;
     let seconds = pyramid.run(control, rendering)?;
-    let window = pyramid.whole().layout().window;
-    let size = [window.width, window.height];
     let steps = steps(&pyramid);
-    let each = (options.frames() / steps.len() as u32).max(2);
-    let held = options.frames_of(what.hold);
-    let mut reel = Reel::new(options, control, each * steps.len() as u32 + held, progress);
-    let mut sum = vec![Rgb::BLACK; window.pixels() as usize];
+    let mut sum = vec![Rgb::BLACK; (size[0] * size[1]) as usize];
     let mut before = options.show(&sum, size)?;
     let right = format!("{} spp   {}", pyramid.whole().eye_samples(), duration(seconds));
     let mut last: Option<Canvas> = None;
@@ -72,7 +73,7 @@ pub fn pyramid(
     reel.finish()
 }
 
-/// What is added, in order, with its name: the strategies, then the longer paths, if they have any light.
+/// What is added, in order, with its name: the strategies, then the longer paths.
 fn steps(pyramid: &Pyramid<'_>) -> Vec<(String, Vec<Rgb>)> {
     let pixels = |film: &Film| film.develop().combined(LightImage::On);
     let mut steps: Vec<_> = pyramid
@@ -80,9 +81,6 @@ fn steps(pyramid: &Pyramid<'_>) -> Vec<(String, Vec<Rgb>)> {
         .iter()
         .map(|l| (format!("+ s = {}, t = {}", l.strategy.s, l.strategy.t), pixels(&l.weighted)))
         .collect();
-    let rest = pixels(pyramid.rest());
-    if rest.iter().any(|p| *p != Rgb::BLACK) {
-        steps.push((format!("+ paths of more than {} edges", pyramid.edges()), rest));
-    }
+    steps.push((format!("+ paths of more than {} edges", pyramid.edges()), pixels(pyramid.rest())));
     steps
 }

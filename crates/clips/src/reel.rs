@@ -1,12 +1,12 @@
 //! What all clips share.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use caustica_canvas::{Canvas, CanvasError};
 use caustica_film::{Develop, to_display};
 use caustica_math::Rgb;
 use caustica_render::{Control, RenderError};
-use caustica_scene::Diagnostic;
+use caustica_scene::{Diagnostic, Scene};
 use caustica_video::{Summary, VideoError, VideoOptions, VideoWriter};
 
 /// How a clip is made.
@@ -78,19 +78,26 @@ pub enum ClipError {
     Stopped,
 }
 
-/// A video that begins with its first frame, whose size it takes.
+/// A video that is being made.
 pub(crate) struct Reel<'a, P> {
-    options: &'a ClipOptions,
     control: &'a Control,
     progress: P,
-    total: u32,
-    done: u32,
-    writer: Option<VideoWriter>,
+    step: Step,
+    writer: VideoWriter,
 }
 
 impl<'a, P: FnMut(Step)> Reel<'a, P> {
-    pub fn new(options: &'a ClipOptions, control: &'a Control, total: u32, progress: P) -> Self {
-        Self { options, control, progress, total, done: 0, writer: None }
+    /// Of that many frames of that size. Says at once if it could not be written.
+    pub fn new(
+        options: &ClipOptions,
+        control: &'a Control,
+        ([width, height], total): ([u32; 2], u32),
+        progress: P,
+    ) -> Result<Self, ClipError> {
+        let (frames_per_second, quality) = (options.frames_per_second, options.quality);
+        let video = VideoOptions { width, height, frames_per_second, quality };
+        let writer = VideoWriter::create(&options.path, video)?;
+        Ok(Self { control, progress, step: Step { done: 0, total }, writer })
     }
 
     /// Adds a frame.
@@ -98,35 +105,20 @@ impl<'a, P: FnMut(Step)> Reel<'a, P> {
         if self.control.is_stopped() {
             return Err(ClipError::Stopped);
         }
-        if self.writer.is_none() {
-            self.writer = Some(VideoWriter::create(
-                &self.options.path,
-                VideoOptions {
-                    width: frame.width(),
-                    height: frame.height(),
-                    frames_per_second: self.options.frames_per_second,
-                    quality: self.options.quality,
-                },
-            )?);
-        }
-        if let Some(writer) = &mut self.writer {
-            writer.push(frame)?;
-        }
-        self.done += 1;
-        (self.progress)(Step { done: self.done, total: self.total });
+        self.writer.push(frame)?;
+        self.step.done += 1;
+        (self.progress)(self.step);
         Ok(())
     }
 
     /// Writes the file.
     pub fn finish(self) -> Result<Summary, ClipError> {
-        match self.writer {
-            Some(writer) => Ok(writer.finish()?),
-            None => Err(ClipError::Stopped),
-        }
+        Ok(self.writer.finish()?)
     }
 }
 
-/// Whether a video can be written there: to be asked before hours of work.
-pub(crate) fn check(path: &Path) -> Result<(), ClipError> {
-    caustica_film::check_writable(path).map_err(|e| ClipError::Render(e.into()))
+/// The size of a scene's picture.
+pub(crate) fn size_of(scene: &Scene) -> [u32; 2] {
+    let window = scene.film.window();
+    [window.width, window.height]
 }

@@ -3,12 +3,15 @@
 mod arguments;
 mod bad_input;
 mod bench;
+mod compare;
 mod develop;
 mod images;
 mod info;
 mod interrupt;
 mod outputs;
+mod pyramid;
 mod render;
 mod replay;
 mod scene_tests;
 mod suspicious;
+mod video;
