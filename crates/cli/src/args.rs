@@ -133,7 +133,7 @@ pub struct Compare {
     /// How long to render the reference, by bdpt [default: ten times as long as each integrator]
     #[arg(long, value_name = "TIME", value_parser = parse_duration)]
     pub reference_time: Option<Duration>,
-    /// What to compare: integrators, and `bdpt-eye`, which is bdpt without its light image
+    /// What to compare, of bdpt, bdpt-eye (without its light image), path, path_ems, naive and light
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = method_names(),
         hide_possible_values = true, default_values = DEFAULT_METHODS)]
     pub integrators: Vec<String>,
@@ -242,7 +242,7 @@ pub struct OrbitVideo {
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
     pub spp: u32,
     /// The whole angle: 360 goes round, less swings there and back
-    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 30.0, allow_negative_numbers = true, value_parser = parse_degrees)]
     pub degrees: f64,
     /// The point to go around [default: what the middle of the picture shows]
     #[arg(long, value_name = "X,Y,Z", allow_negative_numbers = true, value_parser = parse_point)]
@@ -326,22 +326,39 @@ impl Sampling {
             ..Settings::default()
         }
     }
+
+    /// The same for people, and the program's version.
+    pub fn notes(&self) -> Vec<(String, String)> {
+        let name = |value: clap::builder::PossibleValue| value.get_name().to_owned();
+        let depth = self.max_depth.map_or_else(|| "unlimited".to_owned(), |d| d.to_string());
+        let roulette = self.roulette_depth.map_or_else(|| "as usual".to_owned(), |d| d.to_string());
+        [
+            ("max depth", depth),
+            ("roulette depth", roulette),
+            ("seed", self.seed.to_string()),
+            ("sampler", self.sampler.to_possible_value().map(name).unwrap_or_default()),
+            ("heuristic", self.heuristic.to_possible_value().map(name).unwrap_or_default()),
+            ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ]
+        .map(|(name, value)| (name.to_owned(), value))
+        .into()
+    }
 }
 
-/// How a PNG looks.
+/// How a picture is shown.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Look {
-    /// Exposure of the PNG in stops; 1 is twice as bright
+    /// Exposure in stops; 1 is twice as bright
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
     pub exposure: f32,
-    /// Tone map of the PNG: srgb (clipped) or agx (filmic)
+    /// Tone map: srgb (clipped) or agx (filmic)
     #[arg(long, value_name = "NAME", default_value_t = ToneMap::Srgb)]
     pub tone_map: ToneMap,
 }
 
 #[derive(Debug, Args)]
 pub struct Develop {
-    /// OpenEXR file written by `caustica render`
+    /// OpenEXR file with an eye and a light image, as `caustica render` writes it
     pub film: PathBuf,
     /// Output file: .png, or .exr to keep all layers with another `combined` [default: FILM.png]
     #[arg(short, long)]
@@ -478,8 +495,7 @@ fn integrator_names() -> clap::builder::PossibleValuesParser {
 }
 
 fn method_names() -> clap::builder::PossibleValuesParser {
-    let names = INTEGRATOR_NAMES.iter().map(|(name, _)| *name).chain([EYE_ONLY]);
-    clap::builder::PossibleValuesParser::new(names.collect::<Vec<_>>())
+    clap::builder::PossibleValuesParser::new(["bdpt", EYE_ONLY, "path", "path_ems", "naive", "light"])
 }
 
 fn integrator_names_help() -> String {
@@ -545,6 +561,13 @@ fn parse_seconds(text: &str) -> Result<f32, String> {
     match text.trim().trim_end_matches('s').parse::<f32>() {
         Ok(s) if (0.0..=3600.0).contains(&s) => Ok(s),
         _ => Err("use a number of seconds from 0 to 3600".into()),
+    }
+}
+
+fn parse_degrees(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(degrees) if degrees.abs() <= 36_000.0 => Ok(degrees),
+        _ => Err("use a number of degrees between -36000 and 36000".into()),
     }
 }
 

@@ -7,9 +7,13 @@ use std::time::Duration;
 
 use caustica::description::Integrator;
 use caustica::film::{LightImage, Metadata, Window, check_writable, write_exr, write_layers};
+use caustica::scene::Diagnostic;
 use caustica::session::Budget;
 use caustica::{Rgb, Scene, import};
-use caustica_compare::{CompareError, EYE_ONLY, Method, Options, Outcome, ReferenceChoice, compare};
+use caustica_compare::{
+    CompareError, EYE_ONLY, Entrant, Event, Made, Method, Options, Outcome, Reference, ReferenceChoice,
+    Stage, compare,
+};
 use caustica_report::{Comparison, ReportError, write_comparison};
 use serde::Serialize;
 
@@ -19,7 +23,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::loading;
 use crate::progress::Bar;
-use crate::render::integrator;
+use crate::render::{integrator, loss_warnings};
 
 /// How long each integrator renders if nobody says.
 const TIME: Duration = Duration::from_secs(30);
@@ -41,8 +45,6 @@ pub fn run(args: &Compare, console: &mut Console) -> Result<ExitCode, Failure> {
     let scene = &opened.scene;
     let folder = args.output.clone().unwrap_or_else(|| args.source.beside("-compare"));
     let page = folder.join("index.html");
-    fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
-    check_writable(&page).map_err(|e| Failure::output(&page, e))?;
     let budget = Budget {
         samples: args.spp.unwrap_or(u32::MAX),
         time: args.time.or(if args.spp.is_none() { Some(TIME) } else { None }),
@@ -53,21 +55,63 @@ pub fn run(args: &Compare, console: &mut Console) -> Result<ExitCode, Failure> {
         reference: reference(args, scene, budget, console)?,
         threads: args.source.threads.map(usize::from),
     };
-    let interrupts = Interrupts::listen();
-    let bar = Bar::new(console.is_talkative());
-    let outcome = compare(scene, &options, &interrupts.control, |stage, p| {
-        bar.show_stage(&format!("{} ({}/{})", stage.name, stage.index + 1, stage.count), p);
-    });
-    bar.finish();
-    let outcome = outcome.map_err(failure)?;
-    let title = format!("{}: integrators compared", args.source.name());
+    fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
+    for file in files(&folder, &options) {
+        check_writable(&file).map_err(|e| Failure::output(&file, e))?;
+    }
+    let outcome = render(args, scene, &folder, (&options, console))?;
+    let name = args.source.name();
     let comparison =
-        outcome.page(&title, &args.source.name(), notes(args, scene, budget)).map_err(failure)?;
-    let outputs = save_pictures(&outcome, scene, (&folder, args))?;
+        outcome.page(&format!("{name}: integrators compared"), &name, notes(args, scene, budget))?;
     write_comparison(&comparison, &folder).map_err(|e| report_failure(&folder, e))?;
+    let outputs = files(&folder, &options).iter().map(|p| p.display().to_string()).collect();
     let told = Told { page: page.display().to_string(), outputs, comparison: &comparison };
     console.result(&told, || summary(&told))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The files that are written.
+fn files(folder: &Path, options: &Options) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = options.methods.iter().map(|m| picture(folder, &m.name)).collect();
+    if matches!(options.reference, ReferenceChoice::Made(..)) {
+        files.push(picture(folder, "reference"));
+    }
+    files.extend([folder.join("report.json"), folder.join("index.html")]);
+    files
+}
+
+fn picture(folder: &Path, name: &str) -> PathBuf {
+    folder.join(format!("{name}.exr"))
+}
+
+/// Renders everything, and writes each picture as soon as it is there.
+fn render(
+    args: &Compare,
+    scene: &Scene,
+    folder: &Path,
+    (options, console): (&Options, &mut Console),
+) -> Result<Outcome, Failure> {
+    let interrupts = Interrupts::listen();
+    let bar = Bar::new(console.is_talkative());
+    let title = |s: Stage<'_>| format!("{} ({}/{})", s.name, s.index + 1, s.count);
+    let mut lost = Vec::new();
+    let outcome = compare(scene, options, &interrupts.control, |event| {
+        bar.tell_stop(&interrupts.control);
+        match event {
+            Event::Rendering(stage, p) => bar.show_stage(&title(stage), p),
+            Event::Measuring(stage) => bar.show_measuring(&title(stage)),
+            Event::Reference(reference) => save_reference(reference, scene, folder, args)?,
+            Event::Done(entrant) => {
+                let (invalid, clamped) = (entrant.report.invalid, entrant.report.clamped);
+                lost.extend(loss_warnings(&entrant.method.name, (invalid, clamped)));
+                save_picture(entrant, folder, args)?;
+            }
+        }
+        Ok::<_, Failure>(())
+    });
+    bar.finish();
+    console.warn(lost);
+    outcome
 }
 
 fn methods(args: &Compare, scene: &Scene) -> Vec<Method> {
@@ -113,8 +157,7 @@ fn reference(
             window.height
         )));
     }
-    let name = path.file_stem().map_or_else(|| "reference".into(), |n| n.to_string_lossy().into_owned());
-    Ok(ReferenceChoice::Given(image.pixels.to_vec(), name))
+    Ok(ReferenceChoice::Given(image.pixels.to_vec(), path.display().to_string()))
 }
 
 fn notes(args: &Compare, scene: &Scene, budget: Budget) -> Vec<(String, String)> {
@@ -127,48 +170,44 @@ fn notes(args: &Compare, scene: &Scene, budget: Budget) -> Vec<(String, String)>
         .source
         .threads
         .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
-    let depth = args.sampling.max_depth.map_or_else(|| "no limit".to_owned(), |d| d.to_string());
-    [
+    let mut notes: Vec<(String, String)> = [
         ("size", format!("{} × {} pixels", window.width, window.height)),
         ("each integrator", each),
         ("threads", threads.to_string()),
-        ("most edges of a path", depth),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
-    .into()
+    .into();
+    notes.extend(args.sampling.notes());
+    notes
 }
 
-/// Writes every picture as `NAME.exr`, and a reference that was made.
-fn save_pictures(
-    outcome: &Outcome,
+fn save_picture(entrant: &Entrant, folder: &Path, args: &Compare) -> Result<(), Failure> {
+    let path = picture(folder, &entrant.method.name);
+    let mut metadata = entrant.metadata.clone();
+    metadata.set("scene", args.source.name());
+    write_exr(&path, &entrant.picture, LightImage::On, &metadata).map_err(|e| Failure::output(&path, e))
+}
+
+/// Writes a reference that was made here.
+fn save_reference(
+    reference: &Reference,
     scene: &Scene,
-    (folder, args): (&Path, &Compare),
-) -> Result<Vec<String>, Failure> {
-    let mut written: Vec<PathBuf> = Vec::new();
-    for entrant in &outcome.entrants {
-        let path = folder.join(format!("{}.exr", entrant.method.name));
-        let mut metadata = entrant.metadata.clone();
-        metadata.set("scene", args.source.name());
-        write_exr(&path, &entrant.picture, LightImage::On, &metadata)
-            .map_err(|e| Failure::output(&path, e))?;
-        written.push(path);
-    }
-    if let Some((samples, seconds)) = outcome.reference.made {
-        let path = folder.join("reference.exr");
-        let mut metadata = Metadata::new();
-        metadata.set("scene", args.source.name());
-        metadata.set("integrator", "bdpt");
-        metadata.set("samples", samples);
-        metadata.set("seconds", format!("{seconds:.3}"));
-        let (film, w) = (&scene.film, scene.film.window());
-        let window = Window { x: w.x, y: w.y, width: w.width, height: w.height };
-        let layers: [(&str, &[Rgb]); 1] = [("combined", &outcome.reference.pixels)];
-        write_layers(&path, [film.width, film.height], window, (&layers, &metadata))
-            .map_err(|e| Failure::output(&path, e))?;
-        written.push(path);
-    }
-    Ok(written.iter().map(|p| p.display().to_string()).collect())
+    folder: &Path,
+    args: &Compare,
+) -> Result<(), Failure> {
+    let Some(Made { samples, seconds, .. }) = reference.made else { return Ok(()) };
+    let path = picture(folder, "reference");
+    let mut metadata = Metadata::new();
+    metadata.set("scene", args.source.name());
+    metadata.set("integrator", "bdpt");
+    metadata.set("samples", samples);
+    metadata.set("seconds", format!("{seconds:.3}"));
+    metadata.set("version", env!("CARGO_PKG_VERSION"));
+    let (film, w) = (&scene.film, scene.film.window());
+    let window = Window { x: w.x, y: w.y, width: w.width, height: w.height };
+    let layers: [(&str, &[Rgb]); 1] = [("combined", &reference.pixels)];
+    write_layers(&path, [film.width, film.height], window, (&layers, &metadata))
+        .map_err(|e| Failure::output(&path, e))
 }
 
 fn summary(told: &Told<'_>) -> String {
@@ -193,15 +232,19 @@ fn summary(told: &Told<'_>) -> String {
         );
     }
     for s in &told.comparison.speedups {
-        text += &format!("{} reaches {}'s error {:.1} times sooner\n", s.faster, s.slower, s.factor);
+        let more = if s.at_least { "more than " } else { "" };
+        text += &format!("{} reaches {}'s error {more}{:.1} times sooner\n", s.faster, s.slower, s.factor);
     }
     text + &format!("wrote {}", told.page)
 }
 
-fn failure(e: CompareError) -> Failure {
-    match e {
-        CompareError::Render(e) => e.into(),
-        other => Failure::Usage(other.to_string()),
+impl From<CompareError> for Failure {
+    fn from(e: CompareError) -> Self {
+        match e {
+            CompareError::Render(e) => e.into(),
+            CompareError::Metrics(e) => Diagnostic::error(e.to_string()).into(),
+            other => Self::Usage(other.to_string()),
+        }
     }
 }
 

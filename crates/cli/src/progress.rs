@@ -1,12 +1,17 @@
+use std::cell::Cell;
 use std::time::Duration;
 
-use caustica::Progress;
+use caustica::{Control, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::console::note;
 
 /// A progress bar on the standard error, or nothing.
-pub struct Bar(Option<ProgressBar>);
+pub struct Bar {
+    bar: Option<ProgressBar>,
+    /// Whether it has told that the work is being stopped.
+    told: Cell<bool>,
+}
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
@@ -18,27 +23,41 @@ impl Bar {
     /// A bar, or nothing. Without a terminal the bar does not appear, but notes do.
     pub fn new(shown: bool) -> Self {
         if !shown {
-            return Self(None);
+            return Self { bar: None, told: Cell::new(false) };
         }
         let bar = ProgressBar::new(STEPS);
         // The end of the line is left to the `^C` that terminals echo.
         if let Ok(style) = ProgressStyle::with_template("{bar:12.cyan/blue} {wide_msg}    ") {
             bar.set_style(style.progress_chars("━╸─"));
         }
-        Self(Some(bar))
+        Self { bar: Some(bar), told: Cell::new(false) }
     }
 
     /// Shows how far a session is.
     pub fn show(&self, p: &Progress) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.set_position((p.fraction * STEPS as f64) as u64);
             bar.set_message(message(p));
         }
     }
 
+    /// Says once that the work is being stopped, if it is.
+    pub fn tell_stop(&self, control: &Control) {
+        if control.is_stopped() && !self.told.replace(true) {
+            self.note("stopping after this pass; Ctrl-C again stops at once, without a picture");
+        }
+    }
+
+    /// Shows that a stage's picture is being measured.
+    pub fn show_measuring(&self, stage: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(format!("{stage}  measuring"));
+        }
+    }
+
     /// Shows how far a stage of something larger is.
     pub fn show_stage(&self, stage: &str, p: &Progress) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.set_position((p.fraction * STEPS as f64) as u64);
             bar.set_message(format!("{stage}  {}", message(p)));
         }
@@ -46,7 +65,7 @@ impl Bar {
 
     /// Shows how many of a video's frames there are.
     pub fn show_frames(&self, done: u32, total: u32) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.set_position(u64::from(done) * STEPS / u64::from(total.max(1)));
             bar.set_message(format!(
                 "frame {done}/{total}  {} so far",
@@ -57,7 +76,7 @@ impl Bar {
 
     /// Says something above the bar.
     pub fn note(&self, message: &str) {
-        match &self.0 {
+        match &self.bar {
             Some(bar) if bar.is_hidden() => note(format_args!("{message}\n")),
             Some(bar) => bar.println(message),
             None => {}
@@ -66,7 +85,7 @@ impl Bar {
 
     /// Takes the bar away.
     pub fn finish(&self) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }

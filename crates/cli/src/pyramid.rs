@@ -18,9 +18,10 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::loading;
 use crate::progress::Bar;
+use crate::render::loss_warnings;
 
-/// The widest that a picture is on a sheet, in pixels.
-const WIDEST_CELL: u32 = 240;
+/// The longest side of a picture on a sheet, in pixels.
+const LARGEST_CELL: u32 = 240;
 
 /// What `--json` prints, beside warnings.
 #[derive(Serialize)]
@@ -51,7 +52,10 @@ pub fn run(args: &Arguments, console: &mut Console) -> Result<ExitCode, Failure>
     let pyramid = Pyramid::new(&opened.scene, options, args.rows)?;
     let interrupts = Interrupts::listen();
     let bar = Bar::new(console.is_talkative());
-    let seconds = pyramid.run(&interrupts.control, |p| bar.show(p));
+    let seconds = pyramid.run(&interrupts.control, |p| {
+        bar.tell_stop(&interrupts.control);
+        bar.show(p);
+    });
     bar.finish();
     let outcome = Outcome {
         strategies: pyramid.layers().len(),
@@ -59,6 +63,9 @@ pub fn run(args: &Arguments, console: &mut Console) -> Result<ExitCode, Failure>
         seconds: seconds?,
         outputs: files.all().map(|p| p.display().to_string()).into(),
     };
+    for (what, film) in losses(&pyramid) {
+        console.warn(loss_warnings(&what, (film.invalid(), film.clamped())));
+    }
     save(&pyramid, (args, &files), &outcome)?;
     console.result(&outcome, || summary(&outcome))?;
     Ok(ExitCode::SUCCESS)
@@ -89,6 +96,13 @@ impl Files {
     }
 }
 
+/// The films in which contributions can be lost.
+fn losses<'a>(pyramid: &'a Pyramid<'_>) -> impl Iterator<Item = (String, &'a Film)> {
+    let unweighted = |l: &'a Layer| (format!("strategy {}, unweighted", l.strategy), &l.unweighted);
+    std::iter::once(("the picture".to_owned(), pyramid.whole()))
+        .chain(pyramid.layers().iter().map(unweighted))
+}
+
 /// What a strategy's film shows; only one of its two images has anything.
 fn pixels(film: &Film) -> Vec<Rgb> {
     film.develop().combined(LightImage::On)
@@ -110,37 +124,42 @@ fn save(
             unweighted: pixels(unweighted),
         })
         .collect();
+    let rest = pixels(pyramid.rest());
     let notes = notes(args, outcome);
+    save_layers(pyramid, (&images, &rest), (&files.layers, &notes))?;
     for (path, weighted) in [(&files.weighted, true), (&files.unweighted, false)] {
-        sheet_of(&images, (window.width, window.height), weighted, args)
+        sheet_of((&images, &rest), (window.width, window.height), weighted, args)
             .and_then(|canvas| canvas.write_png(path))
             .map_err(|e| Failure::Output(format!("cannot write `{}`: {e}", path.display())))?;
     }
-    save_layers(pyramid, &images, (&files.layers, &notes))?;
     let page = caustica_report::Pyramid {
         title: format!("{}: strategies by path length", args.source.name()),
         width: window.width,
         height: window.height,
         strategies: images,
+        rest: if rest.iter().all(|p| *p == Rgb::BLACK) { Vec::new() } else { rest },
         notes,
     };
     write_pyramid(&page, &files.page).map_err(|e| report_failure(&files.page, e))
 }
 
 fn notes(args: &Arguments, outcome: &Outcome) -> Vec<(String, String)> {
-    [
+    let mut notes: Vec<(String, String)> = [
         ("scene", args.source.name()),
-        ("samples", format!("{} a pixel", outcome.samples)),
+        ("integrator", "bdpt".to_owned()),
+        ("samples", outcome.samples.to_string()),
         ("seconds", format!("{:.1}", outcome.seconds)),
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("rows", args.rows.to_string()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
-    .into()
+    .into();
+    notes.extend(args.sampling.notes());
+    notes
 }
 
 /// All strategies' pictures, weighted or not, one row a path length.
 fn sheet_of(
-    images: &[StrategyImages],
+    (images, rest): (&[StrategyImages], &[Rgb]),
     (width, height): (u32, u32),
     weighted: bool,
     args: &Arguments,
@@ -161,6 +180,11 @@ fn sheet_of(
         let cells = row.iter().map(|i| cell(i).map(Some)).collect::<Result<_, _>>()?;
         rows.push(Row { label, cells });
     }
+    if weighted && rest.iter().any(|p| *p != Rgb::BLACK) {
+        let picture = display(rest, (width, height), args.look)?.scaled_down(small_width, small_height)?;
+        let cell = Cell::new(picture, "all longer paths");
+        rows.push(Row { label: "longer".to_owned(), cells: vec![Some(cell)] });
+    }
     let what = if weighted { "weighted: these add up to the picture" } else { "without weights" };
     let legend = "s light and t camera vertices; t = 1 is the light image. Rows: edges of the path";
     let style = SheetStyle {
@@ -174,11 +198,12 @@ fn sheet_of(
 
 /// The size of a picture on the sheet.
 fn cell_size(width: u32, height: u32) -> (u32, u32) {
-    if width <= WIDEST_CELL {
+    let longest = width.max(height);
+    if longest <= LARGEST_CELL {
         return (width, height);
     }
-    let scaled = u64::from(height) * u64::from(WIDEST_CELL) / u64::from(width);
-    (WIDEST_CELL, (scaled as u32).max(1))
+    let scaled = |side: u32| (u64::from(side) * u64::from(LARGEST_CELL) / u64::from(longest)).max(1) as u32;
+    (scaled(width), scaled(height))
 }
 
 /// Linear pixels as a display shows them.
@@ -191,24 +216,35 @@ pub fn display(pixels: &[Rgb], (width, height): (u32, u32), look: Look) -> Resul
 /// `s1t2unweighted`.
 fn save_layers(
     pyramid: &Pyramid<'_>,
-    images: &[StrategyImages],
+    (images, rest): (&[StrategyImages], &[Rgb]),
     (path, notes): (&Path, &[(String, String)]),
 ) -> Result<(), Failure> {
-    let (whole, rest) = (pixels(pyramid.whole()), pixels(pyramid.rest()));
+    let whole = pixels(pyramid.whole());
     let names: Vec<String> = images.iter().map(|i| format!("s{}t{}", i.s, i.t)).collect();
     let unweighted: Vec<String> = names.iter().map(|n| format!("{n}unweighted")).collect();
-    let mut layers: Vec<(&str, &[Rgb])> = vec![("combined", &whole), ("rest", &rest)];
+    let mut layers: Vec<(&str, &[Rgb])> = vec![("combined", &whole), ("rest", rest)];
     for ((image, name), unweighted) in images.iter().zip(&names).zip(&unweighted) {
         layers.push((name, &image.weighted));
         layers.push((unweighted, &image.unweighted));
     }
     let mut metadata = Metadata::new();
     for (name, value) in notes {
-        metadata.set(name, value);
+        metadata.set(camel_case(name), value);
     }
     let layout = pyramid.whole().layout();
     write_layers(path, [layout.width, layout.height], layout.window, (&layers, &metadata))
         .map_err(|e| Failure::output(path, e))
+}
+
+/// "max depth" as the names of attributes are written: `maxDepth`.
+fn camel_case(words: &str) -> String {
+    let mut name = String::new();
+    for word in words.split_whitespace() {
+        let (first, rest) = word.split_at(1);
+        let first = if name.is_empty() { first.to_owned() } else { first.to_uppercase() };
+        name.push_str(&(first + rest));
+    }
+    name
 }
 
 fn summary(outcome: &Outcome) -> String {

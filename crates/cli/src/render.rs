@@ -71,17 +71,29 @@ pub fn integrator(name: &str, scene: &Scene) -> Option<Integrator> {
     integrator_by_name(name, 2.0 * radius, eye, forward)
 }
 
+/// `--strategies` without `bdpt`.
+pub fn strategy_warning(method: &Method, integrator: &Integrator) -> Option<Diagnostic> {
+    let useless = *integrator != Integrator::Bdpt && !method.strategies.is_all();
+    let name = integrator_name(integrator);
+    useless.then(|| {
+        Diagnostic::warning(format!("`--strategies` has no effect on `{name}`"))
+            .hint("only `bdpt` has strategies to choose from: add `--integrator bdpt`")
+    })
+}
+
+/// What was left out of a film or cut, if anything was.
+pub fn loss_warnings(what: &str, (invalid, clamped): (u64, u64)) -> Vec<Diagnostic> {
+    let warning =
+        |n: u64, why: &str| (n > 0).then(|| Diagnostic::warning(format!("{what}: {n} contributions {why}")));
+    let left_out = warning(invalid, "were not finite numbers and are left out");
+    left_out.into_iter().chain(warning(clamped, "were too large for the film and are cut")).collect()
+}
+
 /// Options that do not do what was probably meant.
 fn setting_warnings(args: &Render, session: &Session<'_>) -> Vec<Diagnostic> {
     let integrator = session.kernel().settings().integrator;
     let name = integrator_name(&integrator);
-    let mut warnings = Vec::new();
-    if integrator != Integrator::Bdpt && !args.method.strategies.is_all() {
-        warnings.push(
-            Diagnostic::warning(format!("`--strategies` has no effect on `{name}`"))
-                .hint("only `bdpt` has strategies to choose from: add `--integrator bdpt`"),
-        );
-    }
+    let mut warnings: Vec<Diagnostic> = strategy_warning(&args.method, &integrator).into_iter().collect();
     let black = match args.light_image {
         LightImageChoice::Only => !session.kernel().has_light_image(),
         LightImageChoice::Off => integrator == Integrator::Light,
@@ -103,12 +115,8 @@ fn run_with_bar(
     console: &Console,
 ) -> Result<Report, Failure> {
     let bar = Bar::new(console.is_talkative());
-    let mut told = false;
     let report = session.run(&interrupts.control, |p| {
-        if interrupts.control.is_stopped() && !told {
-            told = true;
-            bar.note("stopping after this pass; Ctrl-C again stops at once, without a picture");
-        }
+        bar.tell_stop(&interrupts.control);
         bar.show(p);
     });
     bar.finish();

@@ -6,9 +6,13 @@ use std::process::ExitCode;
 
 use caustica::description::Integrator;
 use caustica::film::{Develop, check_writable};
+use caustica::scene::Diagnostic;
 use caustica::session::integrator_name;
-use caustica::{RenderOptions, Scene, Settings, Vec3};
-use caustica_clips::{ClipError, ClipOptions, Converge, Orbit, PyramidClip, Step, converge, orbit, pyramid};
+use caustica::transport::Kernel;
+use caustica::{Progress, RenderOptions, Scene, Settings, Vec3};
+use caustica_clips::{
+    ClipError, ClipOptions, Converge, Layout, Orbit, PyramidClip, Step, converge, orbit, pyramid,
+};
 use caustica_video::VideoError;
 use serde::Serialize;
 
@@ -18,7 +22,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::loading::{self, Opened};
 use crate::progress::Bar;
-use crate::render::settings;
+use crate::render::{settings, strategy_warning};
 
 /// What `--json` prints, beside warnings.
 #[derive(Serialize)]
@@ -37,7 +41,10 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
     let mut opened = loading::open(&clip.source, console)?;
     let interrupts = Interrupts::listen();
     let bar = Bar::new(console.is_talkative());
-    let frames = |s: Step| bar.show_frames(s.done, s.total);
+    let frames = |s: Step| {
+        bar.tell_stop(&interrupts.control);
+        bar.show_frames(s.done, s.total);
+    };
     let options = |integrator: &Integrator| ClipOptions {
         path: output.clone(),
         title: format!("{}, {}", clip.source.name(), integrator_name(integrator)),
@@ -49,7 +56,9 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
     let control = &interrupts.control;
     let summary = match args {
         Video::Converge(a) => {
-            let what = converging(a, &opened);
+            let mut what = converging(a, &opened);
+            console.warn(strategy_warning(&a.method, &what.render.settings.integrator));
+            what.layout = layout(what.layout, &what.render.settings, &opened.scene, console);
             converge(&opened.scene, &what, &options(&what.render.settings.integrator), control, frames)
         }
         Video::Pyramid(a) => {
@@ -57,10 +66,15 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
             let render = render(clip, settings, a.spp.unwrap_or(opened.samples));
             let what = PyramidClip { render, rows: a.rows, hold: a.hold };
             let options = options(&Integrator::Bdpt);
-            pyramid(&opened.scene, &what, (&options, control), |p| bar.show(p), frames)
+            let rendering = |p: &Progress| {
+                bar.tell_stop(control);
+                bar.show(p);
+            };
+            pyramid(&opened.scene, &what, (&options, control), rendering, frames)
         }
         Video::Orbit(a) => {
             let settings = settings(&a.method, &opened.scene, opened.integrator);
+            console.warn(strategy_warning(&a.method, &settings.integrator));
             let render = render(clip, settings, a.spp);
             let what = Orbit { render, degrees: a.degrees, centre: a.centre.map(Vec3::from) };
             let options = options(&what.render.settings.integrator);
@@ -82,6 +96,24 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
         format!("{width} × {height}, {frames} frames, {seconds:.1} s\nwrote {output}")
     })?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The layout, or another where there is no light image to show, or nothing else.
+fn layout(asked: Layout, settings: &Settings, scene: &Scene, console: &mut Console) -> Layout {
+    let name = integrator_name(&settings.integrator);
+    let lacks = if !Kernel::new(scene, settings.clone()).has_light_image() {
+        "light"
+    } else if settings.integrator == Integrator::Light {
+        "eye"
+    } else {
+        return asked;
+    };
+    if asked != Layout::With {
+        console.warn([Diagnostic::warning(format!(
+            "`{name}` makes no {lacks} image here: the picture is shown alone"
+        ))]);
+    }
+    Layout::With
 }
 
 fn converging(a: &args::Converge, opened: &Opened) -> Converge {
@@ -115,7 +147,7 @@ fn failure(e: ClipError) -> Failure {
         ClipError::Render(e) => e.into(),
         ClipError::Camera(d) => Failure::Input(*d),
         ClipError::Video(e @ VideoError::Size { .. }) => Failure::Usage(e.to_string()),
-        ClipError::Stopped => Failure::Machine(e.to_string()),
+        ClipError::Stopped => Failure::Output(e.to_string()),
         other => Failure::Output(format!("cannot make the video: {other}")),
     }
 }

@@ -52,7 +52,8 @@ struct Shown {
 }
 
 /// Renders, and shows the picture as samples double: each second of the clip has as many doublings as any other.
-/// Ctrl-C, or whoever stops `control`, ends it without a file.
+/// A clip that is
+/// stopped ends with the pass that runs.
 ///
 /// # Errors
 /// A film that does not fit into memory, and what encoding and writing say.
@@ -71,13 +72,16 @@ pub fn converge(
     let (mut seconds, mut samples) = (0.0, 0);
     let mut shown: Option<Shown> = None;
     for frame in 0..frames {
+        if reel.is_stopped() {
+            break;
+        }
         let budget = budget(&what.render, frame + 1, (frames, seconds));
         if u64::from(budget.samples) > samples && budget.time.is_none_or(|t| !t.is_zero()) {
             let report = session.run_for(budget, control, |_| ())?;
             (seconds, samples) = (seconds + report.seconds, report.samples);
             shown = Some(develop(&session, options, seconds)?);
         }
-        let Some(shown) = &shown else { return Err(ClipError::Stopped) };
+        let Some(shown) = &shown else { break };
         reel.push(&compose(shown, what.layout, options, frame)?)?;
     }
     for frame in frames..frames + held {

@@ -11,6 +11,7 @@ use caustica_transport::Settings;
 use caustica_video::{Summary, caption};
 use libm::sin;
 
+use crate::converge::duration;
 use crate::reel::{ClipError, ClipOptions, Reel, Step, size_of};
 
 /// How the camera moves.
@@ -18,8 +19,8 @@ use crate::reel::{ClipError, ClipOptions, Reel, Step, size_of};
 pub struct Orbit {
     /// The integrator, and samples per pixel of every frame.
     pub render: RenderOptions,
-    /// The whole angle in degrees: 360 goes round once, less swings there and back, as a sine does. Either way the
-    /// clip can be played in a loop.
+    /// The whole angle in degrees: 360 goes round once, less swings there and back, as a sine does. A clip of these, or
+    /// of whole turns, can be played in a loop.
     pub degrees: f64,
     /// The point that the camera goes around; what its middle shows if `None`.
     pub centre: Option<Vec3>,
@@ -55,17 +56,20 @@ fn swing<P: FnMut(Step)>(
     let axis = nearest_axis(camera.to_world.vector(Vec3::Y));
     let frames = options.frames();
     for frame in 0..frames {
+        if reel.is_stopped() {
+            break;
+        }
         let turned = turned(camera, centre, (axis, angle(what.degrees, frame, frames)));
         scene.camera = place(&turned, &scene.film)?;
         let seed = what.render.settings.seed.wrapping_add(u64::from(frame));
         let settings = Settings { seed, ..what.render.settings.clone() };
         let session = Session::new(scene, RenderOptions { settings, ..what.render.clone() })?;
-        session.run(control, |_| ())?;
+        let report = session.run(control, |_| ())?;
         let picture = session.film().develop();
         let Window { width, height, .. } = picture.window;
         let mut canvas = options.show(&picture.combined(LightImage::On), [width, height])?;
         let samples = picture.eye_samples.max(picture.light_samples);
-        caption(&mut canvas, &options.title, &format!("{samples} spp"));
+        caption(&mut canvas, &options.title, &format!("{samples} spp   {}", duration(report.seconds)));
         reel.push(&canvas)?;
     }
     Ok(())

@@ -73,8 +73,8 @@ pub enum ClipError {
     /// Encoding or writing.
     #[error(transparent)]
     Video(#[from] VideoError),
-    /// It was stopped; nothing was written.
-    #[error("the video was stopped, and nothing is written")]
+    /// It was stopped before the first frame; nothing was written.
+    #[error("the video was stopped before its first frame, and nothing is written")]
     Stopped,
 }
 
@@ -100,11 +100,13 @@ impl<'a, P: FnMut(Step)> Reel<'a, P> {
         Ok(Self { control, progress, step: Step { done: 0, total }, writer })
     }
 
+    /// Whether somebody asked to stop: then the video ends with the frames that it has.
+    pub fn is_stopped(&self) -> bool {
+        self.control.is_stopped()
+    }
+
     /// Adds a frame.
     pub fn push(&mut self, frame: &Canvas) -> Result<(), ClipError> {
-        if self.control.is_stopped() {
-            return Err(ClipError::Stopped);
-        }
         self.writer.push(frame)?;
         self.step.done += 1;
         (self.progress)(self.step);
@@ -113,6 +115,9 @@ impl<'a, P: FnMut(Step)> Reel<'a, P> {
 
     /// Writes the file.
     pub fn finish(self) -> Result<Summary, ClipError> {
+        if self.step.done == 0 {
+            return Err(ClipError::Stopped);
+        }
         Ok(self.writer.finish()?)
     }
 }

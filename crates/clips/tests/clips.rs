@@ -89,7 +89,7 @@ fn pyramids_have_a_step_for_each_strategy() {
     let scene = bench.scene();
     let what = PyramidClip { render: render(4), rows: 3, hold: 0.2 };
     let control = Control::default();
-    // 2 + 3 + 4 strategies and the longer paths, three frames each.
+    // 2 + 3 + 4 strategies and the longer paths, three frames each, and two that hold the end.
     let made = pyramid(&scene, &what, (&bench.options(3.0), &control), |_| (), |_| ()).unwrap();
     assert_eq!(made.frames, 32);
     assert_eq!(made.width, 2 * scene.film.width);
@@ -108,16 +108,36 @@ fn orbits_leave_the_camera_where_it_was() {
 }
 
 #[test]
-fn stopping_leaves_no_file() {
+fn stopping_keeps_the_frames_that_there_are() {
     let bench = Bench::new();
-    let scene = bench.scene();
+    let mut scene = bench.scene();
     let control = Control::default();
-    let what = Converge { render: render(64), layout: Layout::Wipe, hold: 0.0 };
-    let stopped = converge(&scene, &what, &bench.options(2.0), &control, |s| {
-        if s.done == 3 {
-            control.stop();
+    let stop_at = |n: u32| {
+        move |s: Step, control: &Control| {
+            if s.done == n {
+                control.stop()
+            }
         }
-    });
+    };
+    let what = Converge { render: render(64), layout: Layout::Wipe, hold: 0.5 };
+    let made = converge(&scene, &what, &bench.options(2.0), &control, |s| stop_at(3)(s, &control)).unwrap();
+    // The end is held as ever.
+    assert_eq!(made.frames, 3 + 5);
+    let what = Orbit { render: render(1), degrees: 360.0, centre: None };
+    let again = Control::default();
+    let camera = &bench.description.camera;
+    let options = bench.options(2.0);
+    let made = orbit(&mut scene, (camera, &what), &options, &again, |s| stop_at(2)(s, &again)).unwrap();
+    assert_eq!((made.frames, bench.files()), (2, 1));
+}
+
+#[test]
+fn stopping_at_once_leaves_no_file() {
+    let bench = Bench::new();
+    let control = Control::default();
+    control.stop();
+    let what = Converge { render: render(64), layout: Layout::Wipe, hold: 0.0 };
+    let stopped = converge(&bench.scene(), &what, &bench.options(2.0), &control, |_| ());
     assert!(matches!(stopped, Err(ClipError::Stopped)), "{stopped:?}");
     assert_eq!(bench.files(), 0);
 }

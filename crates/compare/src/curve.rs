@@ -37,19 +37,29 @@ pub fn slope(curve: &[Point]) -> Option<f64> {
     (spread > 0.0).then(|| product(0, 1) / spread)
 }
 
-/// When the error had come down to `rel_mse`, in seconds: between points by a straight line in logarithms, before the
-/// first by relMSE ∝ 1/time. `None` if it never does.
-pub fn time_to_reach(curve: &[Point], rel_mse: f64) -> Option<f64> {
+/// When an error was reached, in seconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reached {
+    /// Then, between two points.
+    At(f64),
+    /// Before the first point, which is then.
+    Before(f64),
+}
+
+/// When the error had come down to `rel_mse` for good: between points by a straight line in logarithms. `None` if it
+/// never does.
+pub fn time_to_reach(curve: &[Point], rel_mse: f64) -> Option<Reached> {
     let points = logarithms(curve);
     let target = log(rel_mse);
-    let first = points.first().filter(|_| target.is_finite())?;
-    if first[1] <= target {
-        return Some(exp(first[0] + first[1] - target));
+    let last_above = points.iter().rposition(|p| p[1] > target);
+    match last_above {
+        _ if !target.is_finite() => None,
+        None => points.first().map(|p| Reached::Before(exp(p[0]))),
+        Some(i) => points.get(i + 1).map(|b| {
+            let a = points[i];
+            Reached::At(exp(a[0] + (b[0] - a[0]) * (target - a[1]) / (b[1] - a[1])))
+        }),
     }
-    points.windows(2).find(|w| w[1][1] <= target).map(|w| {
-        let [a, b] = [w[0], w[1]];
-        exp(a[0] + (b[0] - a[0]) * (target - a[1]) / (b[1] - a[1]))
-    })
 }
 
 #[cfg(test)]
@@ -74,14 +84,16 @@ mod tests {
     #[test]
     fn times_lie_between_points() {
         let c = curve(&[(1.0, 0.4), (4.0, 0.1)]);
-        let near = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
+        let near = |a: Option<Reached>, b: f64| matches!(a, Some(Reached::At(t)) if (t - b).abs() < 1e-12);
         assert!(near(time_to_reach(&c, 0.2), 2.0) && near(time_to_reach(&c, 0.1), 4.0));
-        // Twice the error takes half the time.
-        assert!(near(time_to_reach(&c, 0.8), 0.5));
+        assert_eq!(time_to_reach(&c, 0.8), Some(Reached::Before(1.0)));
         assert_eq!(time_to_reach(&c, 0.09), None);
         assert_eq!(time_to_reach(&[], 0.1), None);
         for odd in [0.0, f64::NAN, f64::INFINITY, -1.0] {
             assert_eq!(time_to_reach(&c, odd), None);
         }
+        // A lucky start, then a bright speck: what counts is when it stays below.
+        let c = curve(&[(1.0, 0.1), (2.0, 0.4), (8.0, 0.1)]);
+        assert!(near(time_to_reach(&c, 0.2), 4.0));
     }
 }

@@ -24,7 +24,7 @@ const SHORTEST: u32 = 16;
 
 /// Up to `count` regions that do not overlap, in which the errors of the pictures (per pixel, one list a picture, row
 /// by row) differ most: the mean of the largest less that of the smallest. Those that differ most come first.
-pub fn most_different([width, height]: [u32; 2], errors: &[Vec<f32>], count: usize) -> Vec<Region> {
+pub fn most_different([width, height]: [u32; 2], errors: &[&[f32]], count: usize) -> Vec<Region> {
     let side = |length: u32| (length / SHARE).max(SHORTEST).min(length);
     let (w, h) = (side(width), side(height));
     let mut found: Vec<(f32, Region)> = starts(width, w)
@@ -55,8 +55,8 @@ fn overlap(a: &Region, b: &Region) -> bool {
 }
 
 /// By how much the mean errors in a region differ.
-fn spread(r: Region, width: u32, errors: &[Vec<f32>]) -> f32 {
-    let mean = |picture: &Vec<f32>| {
+fn spread(r: Region, width: u32, errors: &[&[f32]]) -> f32 {
+    let mean = |picture: &&[f32]| {
         let row = |y: u32| {
             let start = (y * width + r.x) as usize;
             // What is not a number is as wrong as can be.
@@ -77,7 +77,7 @@ mod tests {
     #[test]
     fn the_region_that_differs_is_found() {
         let (width, height) = (140, 112);
-        let mut errors = vec![vec![0.1; width * height]; 3];
+        let mut errors = [(); 3].map(|()| vec![0.1; width * height]);
         let patch = |x: usize, y: usize| (60..75).contains(&x) && (20..32).contains(&y);
         for y in 0..height {
             for x in 0..width {
@@ -86,7 +86,7 @@ mod tests {
                 }
             }
         }
-        let regions = most_different([140, 112], &errors, 3);
+        let regions = most_different([140, 112], &errors.each_ref().map(Vec::as_slice), 3);
         let first = regions[0];
         assert_eq!((first.width, first.height), (20, 16));
         assert!(first.x <= 60 && first.x + 20 >= 75 && first.y.abs_diff(20) <= 8, "{first:?}");
@@ -98,9 +98,9 @@ mod tests {
 
     #[test]
     fn nothing_differs_and_tiny_pictures() {
-        assert_eq!(most_different([64, 64], &[vec![0.5; 64 * 64], vec![0.5; 64 * 64]], 4), []);
+        assert_eq!(most_different([64, 64], &[&[0.5; 64 * 64], &[0.5; 64 * 64]], 4), []);
         assert_eq!(most_different([64, 64], &[], 4), []);
         let whole = Region { x: 0, y: 0, width: 3, height: 1 };
-        assert_eq!(most_different([3, 1], &[vec![0.0; 3], vec![0.5; 3]], 4), [whole]);
+        assert_eq!(most_different([3, 1], &[&[0.0; 3], &[0.5; 3]], 4), [whole]);
     }
 }

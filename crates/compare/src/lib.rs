@@ -8,8 +8,8 @@ mod method;
 mod outcome;
 mod race;
 
-pub use curve::{Point, slope, time_to_reach};
+pub use curve::{Point, Reached, slope, time_to_reach};
 pub use insets::{Region, most_different};
 pub use method::{DEFAULT_METHODS, EYE_ONLY, Method};
-pub use outcome::{CompareError, Entrant, Outcome, Reference};
-pub use race::{Options, ReferenceChoice, Stage, compare};
+pub use outcome::{CompareError, Entrant, Made, Outcome, Reference};
+pub use race::{Event, Options, ReferenceChoice, Stage, compare};

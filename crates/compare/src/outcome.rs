@@ -2,11 +2,13 @@
 
 use caustica_film::{Metadata, Picture};
 use caustica_math::Rgb;
-use caustica_metrics::{Image, MetricsError, errors, flip, relative_error_map};
+use caustica_metrics::flip::FlipMap;
+use caustica_metrics::{Errors, Image, MetricsError, errors};
 use caustica_render::{RenderError, Report};
 use caustica_report::{Comparison, CurvePoint, Entry, Inset, Metrics, Shown, Speedup};
+use caustica_scene::Scene;
 
-use crate::curve::{Point, slope, time_to_reach};
+use crate::curve::{Point, Reached, slope, time_to_reach};
 use crate::insets::{Region, most_different};
 use crate::method::Method;
 
@@ -28,7 +30,7 @@ pub enum CompareError {
     Nothing,
     /// Rendering.
     #[error(transparent)]
-    Render(RenderError),
+    Render(#[from] RenderError),
     /// Measuring.
     #[error(transparent)]
     Metrics(#[from] MetricsError),
@@ -37,17 +39,49 @@ pub enum CompareError {
 /// What the pictures should look like.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// What it is called.
-    pub name: String,
+    /// Where it is from.
+    pub from: String,
     /// Its pixels.
     pub pixels: Vec<Rgb>,
-    /// Those of its two independent halves, if it was made here.
-    pub halves: Option<[Vec<Rgb>; 2]>,
-    /// Samples per pixel and seconds, if it was made here.
-    pub made: Option<(u64, f64)>,
+    /// How it was made, if it was.
+    pub made: Option<Made>,
 }
 
-/// One method's picture.
+/// How a reference was made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Made {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Seconds of rendering.
+    pub seconds: f64,
+    /// Its own relMSE, from what its two independent halves differ by; `None` if it was stopped before the second.
+    pub rel_mse: Option<f64>,
+}
+
+impl Reference {
+    /// The mean of two independent halves, by their samples.
+    pub(crate) fn of_halves(
+        scene: &Scene,
+        halves: &[(u64, Vec<Rgb>)],
+        (samples, seconds): (u64, f64),
+    ) -> Result<Self, CompareError> {
+        let [(n, a), (m, b)] = [&halves[0], &halves[1]];
+        let total = samples.max(1) as f32;
+        let mean = |(a, b): (&Rgb, &Rgb)| *a * (*n as f32 / total) + *b * (*m as f32 / total);
+        let pixels: Vec<Rgb> = a.iter().zip(b).map(mean).collect();
+        let rel_mse = if *n > 0 && *m > 0 {
+            let window = scene.film.window();
+            let image = |pixels| Image::new(window.width, window.height, pixels);
+            // a − mean = (a − b)·m/(n + m), and the variance of the mean is that of a − b times nm/(n + m)².
+            Some(errors(image(a)?, image(&pixels)?)?.rel_mse * (*n as f64 / *m as f64))
+        } else {
+            None
+        };
+        Ok(Self { from: "bdpt".into(), pixels, made: Some(Made { samples, seconds, rel_mse }) })
+    }
+}
+
+/// One method's picture, measured.
 #[derive(Clone, Debug)]
 pub struct Entrant {
     /// The method.
@@ -56,17 +90,16 @@ pub struct Entrant {
     pub picture: Picture,
     /// How it was made.
     pub metadata: Metadata,
-    /// What the session tells.
+    /// What its session tells, of all its time.
     pub report: Report,
-    pub(crate) moments: Vec<Moment>,
-}
-
-/// The picture at one moment.
-#[derive(Clone, Debug)]
-pub(crate) struct Moment {
-    pub seconds: f64,
-    pub samples: u64,
-    pub pixels: Vec<Rgb>,
+    /// The picture's errors.
+    pub errors: Errors,
+    /// Squared relative error of each pixel.
+    pub relative_errors: Vec<f32>,
+    /// HDR-ꟻLIP; `None` if the reference is black.
+    pub flip: Option<FlipMap>,
+    /// How the error fell.
+    pub curve: Vec<Point>,
 }
 
 /// All pictures of a comparison.
@@ -78,16 +111,21 @@ pub struct Outcome {
     pub reference: Reference,
     /// The methods, in order; fewer than asked for if the comparison was stopped.
     pub entrants: Vec<Entrant>,
+    /// Whether it was stopped: the last method may have rendered for less long than the others.
+    pub stopped: bool,
 }
 
 /// Insets on a page.
 const INSETS: usize = 4;
 
+/// A method whose mean is farther off than this share does not reach all light: its error does not fall for long.
+const LOST: f64 = 0.05;
+
 impl Outcome {
-    /// Measures everything: what a page shows. `notes` are added to those about the reference.
+    /// What a page shows. What is known of the reference is added to `notes`.
     ///
     /// # Errors
-    /// A reference that is not finite.
+    /// None, of an outcome as [`compare`](crate::compare) makes it.
     pub fn page(
         &self,
         title: &str,
@@ -95,36 +133,18 @@ impl Outcome {
         notes: Vec<(String, String)>,
     ) -> Result<Comparison, CompareError> {
         let mut all_notes = notes;
-        all_notes.extend(self.reference_notes()?);
-        let mut entries = Vec::new();
-        let mut maps = Vec::new();
-        for entrant in &self.entrants {
-            entries.push(self.entry(entrant)?);
-            maps.push(relative_error_map(
-                self.image(&entrant.last().pixels)?,
-                self.image(&self.reference.pixels)?,
-            )?);
-        }
+        all_notes.extend(self.notes());
+        let maps: Vec<&[f32]> = self.entrants.iter().map(|e| e.relative_errors.as_slice()).collect();
         let insets = most_different(self.size, &maps, INSETS);
         Ok(Comparison {
             title: title.to_owned(),
             scene: scene.to_owned(),
             notes: all_notes,
-            reference: Some(self.shown(&self.reference.name, &self.reference.pixels)),
-            speedups: speedups(&entries, self.mean()?),
-            entries,
+            reference: Some(self.shown("reference", &self.reference.pixels)),
+            entries: self.entrants.iter().map(|e| self.entry(e)).collect(),
             insets: insets.into_iter().enumerate().map(inset).collect(),
+            speedups: self.speedups()?,
         })
-    }
-
-    /// The reference's mean luminance.
-    fn mean(&self) -> Result<f64, CompareError> {
-        let reference = self.image(&self.reference.pixels)?;
-        Ok(errors(reference, reference)?.mean)
-    }
-
-    fn image<'a>(&self, pixels: &'a [Rgb]) -> Result<Image<'a>, MetricsError> {
-        Image::new(self.size[0], self.size[1], pixels)
     }
 
     fn shown(&self, name: &str, pixels: &[Rgb]) -> Shown {
@@ -132,63 +152,66 @@ impl Outcome {
         Shown { name: name.to_owned(), width, height, pixels: pixels.to_vec() }
     }
 
-    /// How the reference was made, and its own error: that of the mean of two halves is a quarter of what they differ
-    /// by.
-    fn reference_notes(&self) -> Result<Vec<(String, String)>, CompareError> {
+    fn notes(&self) -> Vec<(String, String)> {
         let mut notes = Vec::new();
-        if let Some((samples, seconds)) = self.reference.made {
-            notes.push(("reference".into(), format!("bdpt, {samples} samples a pixel, {seconds:.0} s")));
+        let mut note = |name: &str, value: String| notes.push((name.to_owned(), value));
+        match &self.reference.made {
+            Some(Made { samples, seconds, rel_mse }) => {
+                note("reference", format!("bdpt, {samples} samples a pixel, {seconds:.0} s"));
+                if let Some(own) = rel_mse {
+                    note("reference's own relMSE", format!("{own:.2e}"));
+                }
+            }
+            None => note("reference", self.reference.from.clone()),
         }
-        if let Some([a, b]) = &self.reference.halves {
-            let between = errors(self.image(a)?, self.image(b)?)?;
-            notes.push(("reference's own relMSE".into(), format!("about {:.2e}", between.rel_mse / 4.0)));
+        if self.stopped {
+            note("stopped early", "the last integrator has had less time than the others".to_owned());
         }
-        Ok(notes)
+        notes
     }
 
-    fn entry(&self, entrant: &Entrant) -> Result<Entry, CompareError> {
-        let reference = self.image(&self.reference.pixels)?;
-        let last = entrant.last();
-        let image = self.image(&last.pixels)?;
-        let e = errors(image, reference)?;
-        // A black reference has no exposure to look at it by.
-        let map = flip::hdr(image, reference, &flip::Options::default()).ok();
-        let curve = self.curve(entrant)?;
-        let seconds = last.seconds;
-        Ok(Entry {
-            shown: self.shown(&entrant.method.name, &last.pixels),
-            label: entrant.method.label.clone(),
+    fn entry(&self, entrant: &Entrant) -> Entry {
+        let Entrant { method, picture, report, errors: e, flip, curve, .. } = entrant;
+        let seconds = report.seconds;
+        Entry {
+            shown: self.shown(&method.name, &picture.combined(caustica_film::LightImage::On)),
+            label: method.label.clone(),
             metrics: Metrics {
                 rel_mse: Some(e.rel_mse),
                 trimmed_rel_mse: Some(e.trimmed_rel_mse),
                 rmse: Some(e.rmse),
-                flip: map.as_ref().map(|m| m.mean),
+                flip: flip.as_ref().map(|m| m.mean),
                 mean: e.mean,
-                samples: last.samples as f64,
+                samples: report.samples as f64,
                 seconds,
                 efficiency: Some(1.0 / (e.rel_mse * seconds)).filter(|x| x.is_finite()),
             },
-            flip_map: map.map(|m| m.values),
-            slope: slope(&curve),
+            flip_map: flip.as_ref().map(|m| m.values.clone()),
+            slope: slope(curve),
             curve: curve.iter().map(curve_point).collect(),
-        })
+        }
     }
 
-    fn curve(&self, entrant: &Entrant) -> Result<Vec<Point>, CompareError> {
-        let reference = self.image(&self.reference.pixels)?;
-        let point = |m: &Moment| {
-            let e = errors(self.image(&m.pixels)?, reference)?;
-            let (rel_mse, trimmed_rel_mse) = (e.rel_mse, e.trimmed_rel_mse);
-            Ok(Point { seconds: m.seconds, samples: m.samples, rel_mse, trimmed_rel_mse })
+    /// How much sooner the best method has the error that each other one ends with, of those that reach all light.
+    fn speedups(&self) -> Result<Vec<Speedup>, CompareError> {
+        let [width, height] = self.size;
+        let reference = Image::new(width, height, &self.reference.pixels)?;
+        let mean = errors(reference, reference)?.mean;
+        let whole = |e: &&Entrant| (e.errors.mean - mean).abs() <= LOST * mean;
+        let error = |e: &Entrant| e.errors.rel_mse;
+        let best = self.entrants.iter().filter(whole).min_by(|a, b| error(a).total_cmp(&error(b)));
+        let Some(best) = best else { return Ok(Vec::new()) };
+        let speedup = |e: &Entrant| {
+            let (seconds, at_least) = match time_to_reach(&best.curve, error(e))? {
+                Reached::At(seconds) => (seconds, false),
+                Reached::Before(seconds) => (seconds, true),
+            };
+            let factor = e.report.seconds / seconds;
+            let (faster, slower) = (best.method.name.clone(), e.method.name.clone());
+            Some(Speedup { faster, slower, factor, at_least })
         };
-        entrant.moments.iter().map(point).collect()
-    }
-}
-
-impl Entrant {
-    /// The picture at the end: rendering makes one moment at least.
-    fn last(&self) -> &Moment {
-        &self.moments[self.moments.len() - 1]
+        let others = self.entrants.iter().filter(whole).filter(|e| e.method.name != best.method.name);
+        Ok(others.filter_map(speedup).collect())
     }
 }
 
@@ -202,36 +225,6 @@ fn curve_point(p: &Point) -> CurvePoint {
 }
 
 fn inset((i, r): (usize, Region)) -> Inset {
-    let label = format!("{}", i + 1);
+    let label = format!("Region {}", i + 1);
     Inset { label, x: r.x, y: r.y, width: r.width, height: r.height }
-}
-
-/// A method whose mean is farther off than this share does not reach all light: its error does not fall for long.
-const LOST: f64 = 0.05;
-
-/// How much sooner the best method of those that reach all light has the error that each other one ends with.
-fn speedups(entries: &[Entry], mean: f64) -> Vec<Speedup> {
-    let error = |e: &Entry| e.metrics.rel_mse.filter(|x| !x.is_nan()).unwrap_or(f64::INFINITY);
-    let whole = |e: &&Entry| (e.metrics.mean - mean).abs() <= LOST * mean;
-    let best = entries.iter().filter(whole).min_by(|a, b| error(a).total_cmp(&error(b)));
-    let Some(best) = best else { return Vec::new() };
-    let curve: Vec<Point> = best
-        .curve
-        .iter()
-        .map(|p| Point {
-            seconds: p.seconds,
-            samples: p.samples as u64,
-            rel_mse: p.rel_mse,
-            trimmed_rel_mse: p.trimmed_rel_mse,
-        })
-        .collect();
-    entries
-        .iter()
-        .filter(|e| e.shown.name != best.shown.name)
-        .filter_map(|e| {
-            let factor = e.metrics.seconds / time_to_reach(&curve, error(e))?;
-            let (faster, slower) = (best.shown.name.clone(), e.shown.name.clone());
-            Some(Speedup { faster, slower, factor })
-        })
-        .collect()
 }

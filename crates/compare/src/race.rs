@@ -2,15 +2,17 @@
 
 use std::time::Duration;
 
-use caustica_film::{FilmError, Picture};
+use caustica_film::LightImage;
 use caustica_math::Rgb;
+use caustica_metrics::{Image, errors, flip, relative_error_map};
 use caustica_render::{Budget, Control, Progress, RenderError, RenderOptions, Report, Session};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
 use caustica_transport::Settings;
 
+use crate::curve::Point;
 use crate::method::Method;
-use crate::outcome::{CompareError, Entrant, Moment, Outcome, Reference};
+use crate::outcome::{CompareError, Entrant, Outcome, Reference};
 
 /// How to compare.
 #[derive(Clone, Debug)]
@@ -28,10 +30,23 @@ pub struct Options {
 /// Where the reference comes from.
 #[derive(Clone, Debug)]
 pub enum ReferenceChoice {
-    /// Pixels of the scene's window, row by row, and what they are called.
+    /// Pixels of the scene's window, row by row, and where they are from.
     Given(Vec<Rgb>, String),
     /// `bdpt` renders it, by these settings but for the seed, for so long.
     Made(Settings, Budget),
+}
+
+/// What is told while a comparison is made.
+#[derive(Clone, Copy, Debug)]
+pub enum Event<'a> {
+    /// A stage renders.
+    Rendering(Stage<'a>, &'a Progress),
+    /// A stage's picture is measured.
+    Measuring(Stage<'a>),
+    /// The reference is there.
+    Reference(&'a Reference),
+    /// A method is done: what it made can be kept.
+    Done(&'a Entrant),
 }
 
 /// What is being rendered.
@@ -50,74 +65,139 @@ pub struct Stage<'a> {
 const REFERENCE_SEED: u64 = 0x5eed_0000;
 
 /// Moments at which the error is measured: each after twice the time of the one before.
-const MOMENTS: u32 = 9;
+const MOMENTS: u32 = 8;
 
 /// Renders the reference, then one method after the other. Stopping ends the comparison with what has been rendered
-/// so far; a reference that was stopped is used as it is. What measuring takes is not counted as time.
+/// so far; a reference that was stopped is used as it is. What measuring takes is not counted as time. `tell` hears of
+/// everything as it happens; its errors end the comparison.
 ///
 /// # Errors
-/// A reference of another size, films that do not fit into memory, threads that do not start.
-pub fn compare(
+/// A reference of another size or with values that are not finite, films that do not fit into memory, threads that do
+/// not start; and those of `tell`.
+pub fn compare<E: From<CompareError>>(
     scene: &Scene,
     options: &Options,
     control: &Control,
-    mut progress: impl FnMut(Stage<'_>, &Progress),
-) -> Result<Outcome, CompareError> {
+    mut tell: impl FnMut(Event<'_>) -> Result<(), E>,
+) -> Result<Outcome, E> {
     let made = usize::from(matches!(options.reference, ReferenceChoice::Made(..)));
     let count = options.methods.len() + made;
-    let reference = reference(scene, options, control, |p| {
-        progress(Stage { name: "reference", index: 0, count }, p);
-    })?;
+    let stage = Stage { name: "reference", index: 0, count };
+    let reference = reference(scene, options, control, |p| tell_progress(&mut tell, stage, p))?;
     let window = scene.film.window();
-    if reference.pixels.len() as u64 != u64::from(window.width) * u64::from(window.height) {
-        let found = reference.pixels.len();
-        return Err(CompareError::Reference { width: window.width, height: window.height, found });
-    }
+    let size = [window.width, window.height];
+    check(&reference, size)?;
+    tell(Event::Reference(&reference))?;
+    let race = Race { scene, options, control, size, reference: &reference.pixels };
     let mut entrants = Vec::new();
     for (i, method) in options.methods.iter().enumerate() {
         if control.is_stopped() {
             break;
         }
         let stage = Stage { name: &method.name, index: i + made, count };
-        entrants.push(enter(scene, options, method, (control, &mut |p: &Progress| progress(stage, p)))?);
+        let entrant = race.enter(method, stage, &mut tell)?;
+        tell(Event::Done(&entrant))?;
+        entrants.push(entrant);
     }
-    Ok(Outcome { size: [window.width, window.height], reference, entrants })
+    Ok(Outcome { size, reference, entrants, stopped: control.is_stopped() })
 }
 
-/// Renders by one method, and keeps what there is at several moments.
-fn enter(
-    scene: &Scene,
-    options: &Options,
-    method: &Method,
-    (control, progress): (&Control, &mut dyn FnMut(&Progress)),
-) -> Result<Entrant, CompareError> {
-    let session = session(scene, &method.settings, options.threads)?;
-    let mut moments: Vec<Moment> = Vec::new();
-    let mut seconds = 0.0;
-    let mut last: Option<Report> = None;
-    for mark in marks(options.budget) {
-        let done = last.as_ref().map_or(0, |r: &Report| r.samples);
-        let late = mark.time.is_some_and(|t| t.as_secs_f64() <= seconds);
-        if late || done >= u64::from(mark.samples) {
-            continue;
-        }
-        let left = mark.time.map(|t| t.saturating_sub(Duration::from_secs_f64(seconds)));
-        let before = seconds;
-        let report = session.run_for(Budget { time: left, ..mark }, control, |p| {
-            progress(&overall(p, before, options.budget));
-        })?;
-        seconds += report.seconds;
-        moments.push(Moment { seconds, samples: report.samples, pixels: pixels(&session.film().develop()) });
-        let stopped = report.stopped;
-        last = Some(report);
-        if stopped {
-            break;
-        }
+/// Progress that cannot end anything: a session calls for it in the middle of its work.
+fn tell_progress<E>(tell: &mut impl FnMut(Event<'_>) -> Result<(), E>, stage: Stage<'_>, p: &Progress) {
+    let _ = tell(Event::Rendering(stage, p));
+}
+
+fn check(reference: &Reference, [width, height]: [u32; 2]) -> Result<(), CompareError> {
+    if reference.pixels.len() as u64 != u64::from(width) * u64::from(height) {
+        return Err(CompareError::Reference { width, height, found: reference.pixels.len() });
     }
-    let report = last.ok_or(CompareError::Nothing)?;
-    let report = Report { seconds, ..report };
-    let metadata = session.metadata(&report);
-    Ok(Entrant { method: method.clone(), picture: session.film().develop(), metadata, report, moments })
+    let image = Image::new(width, height, &reference.pixels)?;
+    errors(image, image)?;
+    Ok(())
+}
+
+/// What every method is given.
+struct Race<'a> {
+    scene: &'a Scene,
+    options: &'a Options,
+    control: &'a Control,
+    size: [u32; 2],
+    reference: &'a [Rgb],
+}
+
+impl Race<'_> {
+    /// Renders by one method, and measures at several moments.
+    fn enter<E: From<CompareError>>(
+        &self,
+        method: &Method,
+        stage: Stage<'_>,
+        tell: &mut impl FnMut(Event<'_>) -> Result<(), E>,
+    ) -> Result<Entrant, E> {
+        let session =
+            session(self.scene, &method.settings, self.options.threads).map_err(CompareError::from)?;
+        let budget = self.options.budget;
+        let mut curve: Vec<Point> = Vec::new();
+        let mut last: Option<Report> = None;
+        for mark in marks(budget) {
+            let (seconds, samples) = curve.last().map_or((0.0, 0), |p| (p.seconds, p.samples));
+            let late = mark.time.is_some_and(|t| t.as_secs_f64() <= seconds);
+            if late || samples >= u64::from(mark.samples) {
+                continue;
+            }
+            let left = mark.time.map(|t| t.saturating_sub(Duration::from_secs_f64(seconds)));
+            let report = session
+                .run_for(Budget { time: left, ..mark }, self.control, |p| {
+                    tell_progress(tell, stage, &overall(p, (seconds, 0), budget));
+                })
+                .map_err(CompareError::from)?;
+            curve.push(self.point(&session, seconds + report.seconds, report.samples)?);
+            let stopped = report.stopped;
+            last = Some(report);
+            if stopped {
+                break;
+            }
+        }
+        tell(Event::Measuring(stage))?;
+        let report = last.ok_or(CompareError::Nothing)?;
+        Ok(self.measured(method, &session, (curve, report))?)
+    }
+
+    fn point(&self, session: &Session<'_>, seconds: f64, samples: u64) -> Result<Point, CompareError> {
+        let pixels = session.film().develop().combined(LightImage::On);
+        let [width, height] = self.size;
+        let reference = Image::new(width, height, self.reference)?;
+        let e = errors(Image::new(width, height, &pixels)?, reference)?;
+        Ok(Point { seconds, samples, rel_mse: e.rel_mse, trimmed_rel_mse: e.trimmed_rel_mse })
+    }
+
+    fn measured(
+        &self,
+        method: &Method,
+        session: &Session<'_>,
+        (curve, report): (Vec<Point>, Report),
+    ) -> Result<Entrant, CompareError> {
+        let picture = session.film().develop();
+        let pixels = picture.combined(LightImage::On);
+        let [width, height] = self.size;
+        let (image, reference) =
+            (Image::new(width, height, &pixels)?, Image::new(width, height, self.reference)?);
+        // All are finite by now, so that only a black reference has no exposure to look at it by.
+        let flip = flip::hdr(image, reference, &flip::Options::default()).ok();
+        let seconds = curve.last().map_or(0.0, |p| p.seconds);
+        let area = f64::from(width) * f64::from(height);
+        let samples_per_second = report.samples as f64 * area / seconds.max(1e-9);
+        let report = Report { seconds, samples_per_second, ..report };
+        Ok(Entrant {
+            method: method.clone(),
+            metadata: session.metadata(&report),
+            errors: errors(image, reference)?,
+            relative_errors: relative_error_map(image, reference)?,
+            picture,
+            report,
+            flip,
+            curve,
+        })
+    }
 }
 
 /// The budgets up to each moment, the last one the whole.
@@ -128,17 +208,13 @@ fn marks(whole: Budget) -> impl Iterator<Item = Budget> {
     })
 }
 
-/// A part's progress as that of the whole.
-fn overall(p: &Progress, before: f64, whole: Budget) -> Progress {
-    let elapsed = p.elapsed + Duration::from_secs_f64(before);
-    let by_samples = p.samples / f64::from(whole.samples);
+/// A part's progress as that of the whole, after so many seconds and samples of other sessions.
+fn overall(p: &Progress, (seconds, samples): (f64, u64), whole: Budget) -> Progress {
+    let elapsed = p.elapsed + Duration::from_secs_f64(seconds);
+    let samples = p.samples + samples as f64;
+    let by_samples = samples / f64::from(whole.samples);
     let by_time = whole.time.map_or(0.0, |t| elapsed.as_secs_f64() / t.as_secs_f64().max(1e-9));
-    Progress { total: whole.samples, fraction: by_samples.max(by_time).min(1.0), elapsed, ..*p }
-}
-
-/// The pixels of a picture as they are compared.
-fn pixels(picture: &Picture) -> Vec<Rgb> {
-    picture.combined(caustica_film::LightImage::On)
+    Progress { samples, total: whole.samples, fraction: by_samples.max(by_time).min(1.0), elapsed, ..*p }
 }
 
 fn session<'a>(
@@ -157,8 +233,8 @@ fn reference(
     mut progress: impl FnMut(&Progress),
 ) -> Result<Reference, CompareError> {
     let (settings, budget) = match &options.reference {
-        ReferenceChoice::Given(pixels, name) => {
-            return Ok(Reference { name: name.clone(), pixels: pixels.clone(), halves: None, made: None });
+        ReferenceChoice::Given(pixels, from) => {
+            return Ok(Reference { from: from.clone(), pixels: pixels.clone(), made: None });
         }
         ReferenceChoice::Made(settings, budget) => (settings, *budget),
     };
@@ -172,28 +248,11 @@ fn reference(
             ..settings.clone()
         };
         let session = session(scene, &settings, options.threads)?;
-        let before = seconds;
+        let before = (seconds, samples);
         let report = session.run_for(half, control, |p| progress(&overall(p, before, budget)))?;
         seconds += report.seconds;
         samples += report.samples;
-        halves.push((report.samples, pixels(&session.film().develop())));
+        halves.push((report.samples, session.film().develop().combined(LightImage::On)));
     }
-    let total = samples.max(1) as f32;
-    let [(n, a), (m, b)] = [&halves[0], &halves[1]];
-    let mean = |(a, b): (&Rgb, &Rgb)| *a * (*n as f32 / total) + *b * (*m as f32 / total);
-    let pixels = a.iter().zip(b).map(mean).collect();
-    let halves = (*n > 0 && *m > 0).then(|| [a.clone(), b.clone()]);
-    Ok(Reference { name: "reference".into(), pixels, halves, made: Some((samples, seconds)) })
-}
-
-impl From<RenderError> for CompareError {
-    fn from(e: RenderError) -> Self {
-        Self::Render(e)
-    }
-}
-
-impl From<FilmError> for CompareError {
-    fn from(e: FilmError) -> Self {
-        Self::Render(e.into())
-    }
+    Reference::of_halves(scene, &halves, (samples, seconds))
 }

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use caustica_compare::{
-    CompareError, DEFAULT_METHODS, EYE_ONLY, Method, Options, Outcome, ReferenceChoice, compare,
+    CompareError, DEFAULT_METHODS, EYE_ONLY, Event, Method, Options, Outcome, ReferenceChoice, compare,
 };
 use caustica_math::Rgb;
 use caustica_render::{Budget, Control, integrator_by_name};
@@ -34,7 +34,7 @@ fn samples(samples: u32) -> Budget {
 
 fn run(names: &[&str], budget: Budget, reference: ReferenceChoice) -> Result<Outcome, CompareError> {
     let options = Options { methods: methods(names), budget, reference, threads: Some(2) };
-    compare(&scene(), &options, &Control::default(), |_, _| ())
+    compare(&scene(), &options, &Control::default(), |_| Ok(()))
 }
 
 #[test]
@@ -103,12 +103,54 @@ fn a_reference_must_fit() {
 }
 
 #[test]
+fn everything_is_told_as_it_happens() {
+    let options = Options {
+        methods: methods(&["path", "bdpt"]),
+        budget: samples(4),
+        reference: ReferenceChoice::Made(base(), samples(8)),
+        threads: Some(1),
+    };
+    let mut told = Vec::new();
+    let tell = |event: Event<'_>| {
+        match event {
+            Event::Rendering(stage, p) => assert!(p.fraction <= 1.0 && stage.count == 3),
+            Event::Measuring(stage) => told.push(format!("measuring {} {}", stage.name, stage.index)),
+            Event::Reference(r) => told.push(format!("reference {}", r.made.unwrap().samples)),
+            Event::Done(e) => told.push(format!("done {}", e.method.name)),
+        }
+        Ok::<_, CompareError>(())
+    };
+    compare(&scene(), &options, &Control::default(), tell).unwrap();
+    assert_eq!(told, ["reference 8", "measuring path 1", "done path", "measuring bdpt 2", "done bdpt"]);
+    let failing = |event: Event<'_>| match event {
+        Event::Done(_) => Err(CompareError::Nothing),
+        _ => Ok(()),
+    };
+    assert!(compare(&scene(), &options, &Control::default(), failing).is_err());
+}
+
+/// The reference's own error, from its halves, is what it differs by from a much better one.
+#[test]
+fn references_know_their_error() {
+    let made = |n| ReferenceChoice::Made(base(), samples(n));
+    let rough = run(&["path"], samples(1), made(16)).unwrap().reference;
+    let fine =
+        run(&["path"], samples(1), ReferenceChoice::Made(Settings { seed: 99, ..base() }, samples(4096)));
+    let fine = fine.unwrap().reference.pixels;
+    let window = scene().film.window();
+    let image = |pixels| caustica_metrics::Image::new(window.width, window.height, pixels).unwrap();
+    let truth = caustica_metrics::errors(image(&rough.pixels), image(&fine)).unwrap().rel_mse;
+    let told = rough.made.unwrap().rel_mse.unwrap();
+    assert!((told / truth - 1.0).abs() < 0.3, "{told} {truth}");
+}
+
+#[test]
 fn stopping_keeps_what_there_is() {
     let control = Control::default();
     control.stop();
     let reference = ReferenceChoice::Given(vec![Rgb::WHITE; open_pixels()], "white".into());
     let options = Options { methods: methods(&["path"]), budget: samples(4), reference, threads: None };
-    let outcome = compare(&scene(), &options, &control, |_, _| ()).unwrap();
+    let outcome = compare(&scene(), &options, &control, |_| Ok::<_, CompareError>(())).unwrap();
     assert!(outcome.entrants.is_empty());
     assert!(outcome.page("", "", Vec::new()).unwrap().entries.is_empty());
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use caustica_film::{Film, FilmError, FilmLayout, Window};
+use caustica_film::{Film, FilmError, FilmLayout, Window, available_memory};
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
@@ -14,6 +14,9 @@ use crate::workers::{Budget, Units, Workers, pixels};
 
 /// The most edges of paths whose strategies can be kept apart: 152 strategies.
 pub const MOST_EDGES: u32 = 16;
+
+/// What the two films of a strategy take, in bytes a pixel.
+const BYTES: u64 = 96;
 
 /// A film of every strategy (s, t) of paths of up to some number of edges, one of all longer paths, and one of all
 /// together.
@@ -46,7 +49,8 @@ impl<'a> Pyramid<'a> {
     /// `bdpt`, whatever the options say.
     ///
     /// # Errors
-    /// If the films do not fit into memory: they take 96 bytes a pixel and strategy.
+    /// If the films do not fit into memory, with as much again for developing them: they take 96 bytes a pixel and
+    /// strategy.
     pub fn new(scene: &'a Scene, options: RenderOptions, edges: u32) -> Result<Self, RenderError> {
         let edges = edges.clamp(1, MOST_EDGES);
         let settings = Settings { integrator: Integrator::Bdpt, ..options.settings.clone() };
@@ -57,6 +61,12 @@ impl<'a> Pyramid<'a> {
             window: Window { x: w.x, y: w.y, width: w.width, height: w.height },
             quantum_exponent: quantum_exponent(scene, &settings.integrator),
         };
+        let strategies = u64::from(edges * (edges + 3) / 2);
+        let needed = layout.window.pixels().saturating_mul(2 * BYTES * (strategies + 1));
+        if available_memory().is_some_and(|available| needed > available) {
+            let Window { width, height, .. } = layout.window;
+            return Err(FilmError::TooLarge { width, height, megabytes: needed.div_ceil(1_000_000) }.into());
+        }
         let layers = (1..=edges)
             .flat_map(|k| (0..=k).map(move |s| Strategy { s, t: k + 1 - s }))
             .map(|strategy| {

@@ -76,7 +76,7 @@ pub struct Metrics {
     pub rmse: Option<f64>,
     /// Mean HDR-FLIP, in [0, 1].
     pub flip: Option<f64>,
-    /// Mean of all channels, in units of radiance.
+    /// Mean luminance, in units of radiance.
     pub mean: f64,
     /// Samples per pixel.
     pub samples: f64,
@@ -114,7 +114,7 @@ pub struct Inset {
     pub height: u32,
 }
 
-/// "`faster` reaches `slower`'s error `factor` times sooner."
+/// "`faster` reaches `slower`'s error (more than) `factor` times sooner."
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Speedup {
     /// Name of the image that is better.
@@ -123,6 +123,8 @@ pub struct Speedup {
     pub slower: String,
     /// Ratio of times to the same error. Sentences whose factor is not finite are left out of the page.
     pub factor: f64,
+    /// Whether it is more than that: the error was reached before it was first measured.
+    pub at_least: bool,
 }
 
 #[derive(Template)]
@@ -131,7 +133,7 @@ struct Page<'a> {
     title: &'a str,
     scene: &'a str,
     notes: &'a [(String, String)],
-    speedups: Vec<(&'a str, &'a str, String)>,
+    speedups: Vec<Sentence<'a>>,
     style: &'static str,
     script: &'static str,
     data: String,
@@ -217,9 +219,21 @@ fn blobs(comparison: &Comparison) -> Vec<Blob> {
     blobs
 }
 
-fn sentences(speedups: &[Speedup]) -> Vec<(&str, &str, String)> {
+/// A speed-up as the page says it.
+struct Sentence<'a> {
+    faster: &'a str,
+    slower: &'a str,
+    factor: String,
+    at_least: bool,
+}
+
+fn sentences(speedups: &[Speedup]) -> Vec<Sentence<'_>> {
     let known = speedups.iter().filter(|s| s.factor.is_finite() && s.factor > 0.0);
-    known.map(|s| (s.faster.as_str(), s.slower.as_str(), factor_text(s.factor))).collect()
+    fn sentence(s: &Speedup) -> Sentence<'_> {
+        let Speedup { faster, slower, factor, at_least } = s;
+        Sentence { faster, slower, factor: factor_text(*factor), at_least: *at_least }
+    }
+    known.map(sentence).collect()
 }
 
 /// A factor as people say it: two digits, or all that are left of the point.

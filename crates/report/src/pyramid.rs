@@ -24,8 +24,17 @@ pub struct Pyramid {
     pub height: u32,
     /// The strategies, in any order.
     pub strategies: Vec<StrategyImages>,
+    /// What all other paths add, weighted, such as longer ones: with it the weighted images add up to the whole. Empty
+    /// if there is nothing.
+    #[serde(rename = "longer", serialize_with = "is_there")]
+    pub rest: Vec<Rgb>,
     /// Settings by name: scene, integrator, samples.
     pub notes: Vec<(String, String)>,
+}
+
+/// Pixels as the page's script hears of them: whether there are any.
+fn is_there<S: serde::Serializer>(pixels: &[Rgb], to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_bool(!pixels.is_empty())
 }
 
 /// What one strategy sees: s light vertices joined with t camera vertices, a path of s + t − 1 edges.
@@ -35,7 +44,7 @@ pub struct StrategyImages {
     pub s: u32,
     /// Vertices on the camera's side.
     pub t: u32,
-    /// Linear pixels, each contribution times its weight: these add up to the image.
+    /// Linear pixels, each contribution times its weight: these and the rest add up to the image.
     #[serde(skip)]
     pub weighted: Vec<Rgb>,
     /// Linear pixels, as if this strategy were the only one for paths of its length.
@@ -95,16 +104,24 @@ fn check(pyramid: &Pyramid) -> Result<(), ReportError> {
             check_count(&name, [pyramid.width, pyramid.height], pixels.len())?;
         }
     }
+    if !pyramid.rest.is_empty() {
+        check_count("all other paths", [pyramid.width, pyramid.height], pyramid.rest.len())?;
+    }
     Ok(())
 }
 
-/// The images as `weighted-0`, `unweighted-0`, ….
+/// The images as `weighted-0`, `unweighted-0`, …; the rest as the last weighted one.
 fn blobs(pyramid: &Pyramid) -> Vec<Blob> {
     let both = |(i, strategy): (usize, &StrategyImages)| {
         [("weighted", &strategy.weighted), ("unweighted", &strategy.unweighted)]
             .map(|(kind, pixels)| Blob::new(format!("{kind}-{i}"), encode_rgb(pixels, pyramid.width)))
     };
-    pyramid.strategies.iter().enumerate().flat_map(both).collect()
+    let mut blobs: Vec<_> = pyramid.strategies.iter().enumerate().flat_map(both).collect();
+    if !pyramid.rest.is_empty() {
+        let name = format!("weighted-{}", pyramid.strategies.len());
+        blobs.push(Blob::new(name, encode_rgb(&pyramid.rest, pyramid.width)));
+    }
+    blobs
 }
 
 #[cfg(test)]
@@ -116,13 +133,26 @@ mod tests {
     }
 
     fn pyramid(strategies: Vec<StrategyImages>) -> Pyramid {
-        Pyramid { title: "A <b>pyramid</b>".into(), width: 1, height: 1, strategies, notes: vec![] }
+        Pyramid {
+            title: "A <b>pyramid</b>".into(),
+            width: 1,
+            height: 1,
+            strategies,
+            rest: vec![],
+            notes: vec![],
+        }
     }
 
     #[test]
     fn one_pixel_makes_a_page() {
         let page = pyramid_page(&pyramid(vec![strategy(0, 2), strategy(1, 1)])).unwrap();
         assert!(page.contains("id=\"unweighted-1\"") && !page.contains("<b>pyramid"));
+        assert!(!page.contains("id=\"weighted-2\""));
+        let longer = Pyramid { rest: vec![Rgb::WHITE], ..pyramid(vec![strategy(0, 2), strategy(1, 1)]) };
+        let page = pyramid_page(&longer).unwrap();
+        assert!(page.contains("id=\"weighted-2\"") && page.contains("\"longer\":true"));
+        let wrong = Pyramid { rest: vec![Rgb::WHITE; 2], ..longer };
+        assert!(pyramid_page(&wrong).unwrap_err().to_string().contains("all other paths"));
     }
 
     #[test]

@@ -30,6 +30,18 @@ fn a_pyramid_is_two_sheets_layers_and_a_page() {
 }
 
 #[test]
+fn longer_paths_are_shown_too() {
+    let bench = Bench::new();
+    let args = ["pyramid", "scene.xml", "--spp", "3", "--crop", "3,2,17,9", "-q"];
+    for (rows, longer) in [("2", "\"longer\":true"), ("5", "\"longer\":false")] {
+        let depth = if rows == "2" { "5" } else { "4" };
+        bench.run(&[&args[..], &["--rows", rows, "--max-depth", depth]].concat()).ok();
+        let page = String::from_utf8(bench.bytes("scene-pyramid.html")).unwrap();
+        assert!(page.contains(longer), "{rows} rows");
+    }
+}
+
+#[test]
 fn wrong_pyramids() {
     let bench = Bench::new();
     bench.run(&["pyramid", "scene.xml", "--rows", "0"]).fails(2, &["0 is not in 1..=16"]);

@@ -22,6 +22,29 @@ fn each_kind_of_video_is_an_mp4() {
 }
 
 #[test]
+fn pictures_without_a_light_image_are_shown_alone() {
+    let bench = Bench::new();
+    for (integrator, what) in [("path", "no light image"), ("light", "no eye image")] {
+        let args = ["video", "converge", "scene.xml", "--spp", "2", "--integrator", integrator];
+        let ran = bench.run(&[&args[..], &["--seconds", "0.2", "--layout", "side"]].concat()).ok();
+        assert!(ran.err.contains("warning") && ran.err.contains(what), "{}", ran.err);
+        assert!(ran.out.starts_with("24 × 16"), "{}", ran.out);
+    }
+    let ran = bench.run(&[
+        "video",
+        "orbit",
+        "scene.xml",
+        "--integrator",
+        "path",
+        "--strategies",
+        "s=0",
+        "--seconds",
+        "0.1",
+    ]);
+    assert!(ran.ok().err.contains("`--strategies` has no effect"));
+}
+
+#[test]
 fn wrong_videos() {
     let bench = Bench::new();
     bench.run(&["video", "orbit", "scene.xml", "-o", "x.avi"]).fails(2, &["must end in .mp4"]);
@@ -31,6 +54,7 @@ fn wrong_videos() {
     bench
         .run(&["video", "pyramid", "scene.xml", "--resolution", "24x8"])
         .fails(2, &["48 × 8", "at least 16"]);
+    bench.run(&["video", "orbit", "scene.xml", "--degrees", "nan"]).fails(2, &["number of degrees"]);
     bench.run(&["video", "orbit", "scene.xml", "--centre", "1,2"]).fails(2, &["X,Y,Z"]);
     assert!(bench.made().is_empty());
 }

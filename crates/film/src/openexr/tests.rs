@@ -217,4 +217,5 @@ fn layers_have_names() {
         assert!(write_layers(&path, [5, 4], window, (&[(name, pixels)], &facts)).is_err(), "{name}");
     }
     assert!(write_layers(&path, [2, 2], window, (&layers, &facts)).is_err());
+    assert!(write_layers(&path, [5, 4], window, (&[layers[0], layers[0]], &facts)).is_err());
 }

@@ -41,8 +41,8 @@ pub fn write_exr(
 }
 
 /// Writes layers of linear pixels by their names, each of which holds the window of a picture of that width and
-/// height, row by row. A layer's channels are `NAME.R`, `NAME.G` and `NAME.B`; `combined` is what programs that know
-/// one layer show. The same layers and facts give the same bytes.
+/// height, row by row. A layer's channels are `NAME.R`, `NAME.G` and `NAME.B`; `combined` is what
+/// Caustica shows of a file. The same layers and facts give the same bytes.
 ///
 /// # Errors
 /// Layers that do not fit the window, names that are empty or not plain ASCII, and what the system says.
@@ -53,7 +53,10 @@ pub fn write_layers(
     (layers, metadata): (&[(&str, &[Rgb])], &Metadata),
 ) -> Result<(), FilmError> {
     check_window(size[0], size[1], window)?;
-    for (name, pixels) in layers {
+    for (i, (name, pixels)) in layers.iter().enumerate() {
+        if layers[..i].iter().any(|(other, _)| other == name) {
+            return Err(FilmError::Layout(format!("two layers are called `{name}`")));
+        }
         if name.is_empty() || !name.bytes().all(|b| b.is_ascii_graphic()) || name.len() > LONGEST_LAYER {
             return Err(FilmError::Layout(format!("`{name}` cannot be the name of a layer")));
         }

@@ -51,7 +51,7 @@ pub fn comparison(width: u32, height: u32) -> Comparison {
 }
 
 fn speedup(faster: &str, slower: &str, factor: f64) -> Speedup {
-    Speedup { faster: faster.into(), slower: slower.into(), factor }
+    Speedup { faster: faster.into(), slower: slower.into(), factor, at_least: false }
 }
 
 /// An entry with simple errors, and a curve that falls as those of unbiased methods do.
@@ -100,7 +100,7 @@ pub fn pyramid(width: u32, height: u32) -> Pyramid {
         }
     }
     let notes = vec![("Scene".to_owned(), "made up".to_owned()), ("Depth".to_owned(), "5".to_owned())];
-    Pyramid { title: "Strategies of a hill".into(), width, height, strategies, notes }
+    Pyramid { title: "Strategies of a hill".into(), width, height, strategies, rest: Vec::new(), notes }
 }
 
 /// A sun over hills; `change` gets the pixel's number and colour.

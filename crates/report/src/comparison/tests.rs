@@ -28,7 +28,8 @@ fn odd_numbers_are_null_in_json() {
     };
     odd.entries[0].slope = Some(f64::NAN);
     odd.entries[0].curve = vec![CurvePoint { seconds: 1.0, rel_mse: f64::INFINITY, ..CurvePoint::default() }];
-    odd.speedups = vec![Speedup { faster: "a".into(), slower: "b".into(), factor: f64::NAN }];
+    odd.speedups =
+        vec![Speedup { faster: "a".into(), slower: "b".into(), factor: f64::NAN, at_least: false }];
     let json: serde_json::Value = serde_json::from_str(&comparison_json(&odd).unwrap()).unwrap();
     let entry = &json["entries"][0];
     for value in [&entry["metrics"]["rel_mse"], &entry["metrics"]["mean"], &entry["metrics"]["seconds"]] {
@@ -48,7 +49,7 @@ fn strings_cannot_leave_their_place() {
     page.notes = vec![(evil.into(), evil.into())];
     page.entries[0].label = evil.into();
     page.entries[0].shown.name = evil.into();
-    page.speedups = vec![Speedup { faster: evil.into(), slower: evil.into(), factor: 14.2 }];
+    page.speedups = vec![Speedup { faster: evil.into(), slower: evil.into(), factor: 14.2, at_least: true }];
     page.insets = vec![Inset { label: evil.into(), x: 0, y: 0, width: 1, height: 1 }];
     let html = comparison_page(&page).unwrap();
     assert!(!html.contains("<script>alert") && !html.contains("alert('x')</script>"));

@@ -1,12 +1,14 @@
 // The page of strategies: a tier per path length, and their sum, made anew with every switch.
 
 const THUMBNAIL = 176;
-const nameOf = ({ s, t }) => `s = ${s}, t = ${t}`;
+const nameOf = ({ s, t, longer }) => (longer ? "all longer paths" : `s = ${s}, t = ${t}`);
+const lengthOf = ({ s, t, longer }) => (longer ? Infinity : s + t - 1);
 
 class Pyramid {
   constructor(root, viewer, data) {
     Object.assign(this, { root, viewer, data, kind: "weighted", chosen: 0, work: Promise.resolve() });
     const { width, height } = data;
+    if (data.longer) data.strategies.push({ longer: true });
     // Sums of halves are exact in doubles, so that nothing is left when a strategy is switched off again.
     this.total = new Float64Array(3 * width * height);
     this.sum = floatImage(width, height);
@@ -21,14 +23,15 @@ class Pyramid {
     const { width, height, strategies } = this.data;
     const set = [];
     for (let i = 0; i < strategies.length; i++) {
-      const pixels = await unpackRgb(`${kind}-${i}`, width, height);
+      // Longer paths have no picture without weights.
+      const pixels = await unpackRgb(`${strategies[i].longer ? "weighted" : kind}-${i}`, width, height);
       set.push({ pixels, small: shrink(pixels, THUMBNAIL * Math.min(devicePixelRatio || 1, 2)) });
     }
     return (this.sets[kind] = set);
   }
 
   build() {
-    const lengths = [...new Set(this.data.strategies.map(({ s, t }) => s + t - 1))].sort((a, b) => a - b);
+    const lengths = [...new Set(this.data.strategies.map(lengthOf))].sort((a, b) => a - b);
     this.cells = [];
     const tiers = lengths.map((length) => this.tier(length));
     const widest = Math.max(...tiers.map((tier) => tier.lastChild.childElementCount));
@@ -49,11 +52,11 @@ class Pyramid {
   tier(length) {
     const members = this.data.strategies
       .map((strategy, index) => ({ ...strategy, index }))
-      .filter(({ s, t }) => s + t - 1 === length)
+      .filter((strategy) => lengthOf(strategy) === length)
       .sort((a, b) => a.s - b.s);
-    const isMember = ({ s, t }) => s + t - 1 === length;
-    const edges = `${length} edge${length === 1 ? "" : "s"}`;
-    const title = `Switch all paths of ${edges}`;
+    const isMember = (strategy) => lengthOf(strategy) === length;
+    const edges = length === Infinity ? "longer" : `${length} edge${length === 1 ? "" : "s"}`;
+    const title = length === Infinity ? "Switch all longer paths" : `Switch all paths of ${edges}`;
     const heading = make("button", { type: "button", class: "plain tier-name", "aria-pressed": true, title }, edges);
     heading.addEventListener("click", () => this.turn(isMember, !this.isOn(isMember)));
     const cells = members.map((strategy) => this.cell(strategy));
@@ -71,7 +74,9 @@ class Pyramid {
     const box = make("input", { type: "checkbox", "aria-label": name });
     box.checked = true;
     box.addEventListener("change", () => this.turn((_, index) => index === strategy.index, box.checked));
-    const text = make("span", {}, make("var", {}, "s"), ` = ${strategy.s}, `, make("var", {}, "t"), ` = ${strategy.t}`);
+    const text = strategy.longer
+      ? make("span", {}, "weighted")
+      : make("span", {}, make("var", {}, "s"), ` = ${strategy.s}, `, make("var", {}, "t"), ` = ${strategy.t}`);
     const cell = make("div", { class: "cell" }, picture, make("label", {}, box, text));
     this.cells[strategy.index] = { cell, canvas, box };
     return cell;
@@ -84,6 +89,8 @@ class Pyramid {
   /** Switches strategies and changes the sum by them. */
   turn(which, on) {
     const set = this.sets[this.kind];
+    // Still unpacking: nothing is changed, and what was clicked is put right when that is done.
+    if (!set) return;
     this.data.strategies.forEach((strategy, index) => {
       if (!which(strategy, index) || this.on[index] === on) return;
       this.on[index] = on;

@@ -14,7 +14,7 @@ const COLUMNS = {
   rmse: ["RMSE", "root of the mean squared error", -1, short],
   flip: ["FLIP", "mean HDR-FLIP, what an eye sees when flipping", -1, short],
   efficiency: ["efficiency", "1 / (relMSE · time)", 1, short],
-  mean: ["mean", "mean of all channels: differs where an image is biased", 0, short],
+  mean: ["mean", "Mean luminance: differs where an image is biased", 0, short],
   samples: ["samples", "samples per pixel", 0, (value) => (value === null ? "–" : String(Math.round(value)))],
   seconds: ["time", "time of rendering", 0, duration],
 };

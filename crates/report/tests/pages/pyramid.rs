@@ -32,6 +32,7 @@ fn sample() -> Pyramid {
         width: SIZE[0],
         height: SIZE[1],
         strategies: strategies().into_iter().map(strategy).collect(),
+        rest: Vec::new(),
         notes: Vec::new(),
     }
 }
@@ -118,4 +119,33 @@ fn switches_change_the_sum() {
     let mut page = browser.open_address(&address, LAPTOP);
     assert_eq!(page.text("[data-part=tag-left]"), "s = 1, t = 2");
     assert_eq!(page.number("caustica.viewer.state.stops"), 1.0);
+}
+
+/// All longer paths are a tile of their own, weighted in both sums.
+#[test]
+fn longer_paths_are_switched_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("pyramid.html");
+    let longer = vec![Rgb::new(0.25, 0.0, 0.0); (SIZE[0] * SIZE[1]) as usize];
+    write_pyramid(&Pyramid { rest: longer, ..sample() }, &file).unwrap();
+    let file = fs::canonicalize(file).unwrap();
+    let Some(mut browser) = Browser::start(&[]) else { return };
+    let mut page = browser.open(&file, LAPTOP);
+    let red = "caustica.viewer.images[0].pixels.data[300]";
+    let sum = |factor: f32| {
+        f64::from(factor * strategies().into_iter().map(|[s, t]| share(s, t, 100)).sum::<f32>())
+    };
+    let near =
+        |found: f64, expected: f64| assert!((found - expected).abs() < 1e-3 * expected, "{found} {expected}");
+    near(page.number(red), sum(1.0) + 0.25);
+    page.click("input[aria-label='all longer paths']");
+    near(page.number(red), sum(1.0));
+    page.click(".tier:last-child .tier-name");
+    near(page.number(red), sum(1.0) + 0.25);
+    page.click("[data-set=unweighted]");
+    page.wait("document.querySelector('[data-set=unweighted]').ariaPressed === 'true'");
+    near(page.number(red), sum(1.5) + 0.25);
+    page.click("[title='Show all longer paths large']");
+    assert_eq!(page.text("[data-part=tag-left]"), "all longer paths");
+    assert_eq!(page.complaints(), [""; 0]);
 }

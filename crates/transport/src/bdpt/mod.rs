@@ -151,7 +151,12 @@ impl Kernel<'_> {
         if !self.exhaustive {
             return Some(running());
         }
-        self.settings.strategies.contains(joined.strategy).then(|| self.exhaustive_weight(sample, joined))
+        self.is_wanted(joined.strategy).then(|| self.exhaustive_weight(sample, joined))
+    }
+
+    /// Whether the strategy is in the set; where weights are running sums, all of its class are.
+    fn is_wanted(&self, strategy: Strategy) -> bool {
+        !self.exhaustive || self.settings.strategies.contains(strategy)
     }
 
     /// Tells a sink that probes.

@@ -38,11 +38,15 @@ impl Kernel<'_> {
         lens: [f32; 2],
         sink: &mut S,
     ) -> Option<(Spectrum, Vec2)> {
+        let strategy = Strategy { s: 1, t: 1 };
+        if !self.is_wanted(strategy) {
+            return None;
+        }
         let (lamp, link, radiance) = self.lamp_link(emission, lens)?;
         let from_camera = link.pdf.0 * link.falloff * lamp.cos(link.direction);
         let value = radiance * (from_camera / (emission.pdf.point.0 * self.light_paths));
         let junction = Junction { light: (from_camera, 0.0), eye: (0.0, 0.0) };
-        let joined = Joined::seen(Strategy { s: 1, t: 1 }, emission, junction, value, &link);
+        let joined = Joined::seen(strategy, emission, junction, value, &link);
         let value = self.finish(
             sample,
             &joined,
@@ -93,6 +97,9 @@ impl Kernel<'_> {
         sink: &mut S,
     ) -> Option<(Spectrum, Vec2)> {
         let strategy = Strategy { s: i as u32 + 2, t: 1 };
+        if !self.is_wanted(strategy) {
+            return None;
+        }
         let y = &sample.light.vertices[i];
         let (link, at_light) = self.camera_link(y, lens)?;
         let value = y.throughput * at_light.value * (link.pdf.0 * link.falloff / self.light_paths);
