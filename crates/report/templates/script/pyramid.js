@@ -23,8 +23,12 @@ class Pyramid {
     const { width, height, strategies } = this.data;
     const set = [];
     for (let i = 0; i < strategies.length; i++) {
-      // Longer paths have no picture without weights.
-      const pixels = await unpackRgb(`${strategies[i].longer ? "weighted" : kind}-${i}`, width, height);
+      // Longer paths have no picture without weights. (The weighted ones come first.)
+      if (strategies[i].longer && kind !== "weighted") {
+        set.push(this.sets.weighted[i]);
+        continue;
+      }
+      const pixels = await unpackRgb(`${kind}-${i}`, width, height);
       set.push({ pixels, small: shrink(pixels, THUMBNAIL * Math.min(devicePixelRatio || 1, 2)) });
     }
     return (this.sets[kind] = set);
