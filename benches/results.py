@@ -4,13 +4,12 @@
     python3 benches/results.py [--binary PROGRAM] [--scenes a,b] [--time 10] [--reference-time 60]
 
 Needs Python's standard library alone, and a release build of `caustica`. With the settings of the file that is kept,
-it takes about half an hour; what it finds goes to docs/results.md.
+it takes a quarter of an hour.
 """
 
 import argparse
 import datetime
 import json
-import os
 import platform
 import subprocess
 import tempfile
@@ -22,6 +21,8 @@ SCENES = ["final", "glass", "long-way", "inverted", "bulb", "gap", "many-lamps",
 CLASSIC_SAMPLES, CLASSIC_HOURS, CLASSIC_SIZE = 5000, 4, "800x600"
 # A bidirectional path tracer of the usual kind: independent samples, roulette after three bounces.
 CLASSIC = ["--sampler", "independent", "--roulette-depth", "3"]
+TIMED_PASSES = 8
+SEEDS = 3
 
 
 def parsed():
@@ -32,7 +33,7 @@ def parsed():
     p.add_argument("--size", default="400x300", help="of the pictures that are compared")
     p.add_argument("--time", type=float, default=10, help="seconds for each integrator and scene")
     p.add_argument("--reference-time", type=float, default=60, help="seconds for each reference")
-    p.add_argument("--passes", type=int, default=48, help="samples a pixel from which the headline is worked out")
+    p.add_argument("--passes", type=int, default=32, help="samples a pixel from which the headline is worked out")
     p.add_argument("--output", type=Path, default=ROOT / "docs/results.md")
     return p.parse_args()
 
@@ -45,89 +46,113 @@ def caustica(options, *args):
     return json.loads(ran.stdout)
 
 
+def processor():
+    """The name of the CPU, where the system tells."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        return next(line.split(":", 1)[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        return platform.processor() or platform.machine()
+
+
 def scene_file(name):
     return ROOT / "scenes" / name / f"{name}.xml"
 
 
-def between(options, folder, more, seeds):
-    """relMSE and trimmed relMSE of one picture of `final` (half of what two independent ones differ by), and seconds."""
-    args = [scene_file("final"), "--resolution", CLASSIC_SIZE, "--spp", options.passes, *more]
-    made = caustica(options, "render", *args, "--seed", seeds[0], "-o", folder / "half")
-    told = caustica(options, "compare", *args, "--integrators", "bdpt", "--seed", seeds[1],
-                    "--reference", folder / "half.exr", "-o", folder / "difference")
-    metrics = told["entries"][0]["metrics"]
-    return metrics["rel_mse"] / 2, metrics["trimmed_rel_mse"] / 2, (made["seconds"] + metrics["seconds"]) / 2
+def seconds_a_pass(options, folder, more):
+    """Seconds of one sample a pixel of `final` in the reference work's size."""
+    told = caustica(options, "render", scene_file("final"), "--resolution", CLASSIC_SIZE, "--spp", TIMED_PASSES,
+                    *more, "-o", folder / "timed")
+    return told["seconds"] / told["samples"]
 
 
-def headline(options, folder):
-    """The sentences about the reference work's samples."""
-    n = options.passes
-    print(f"final, {n} samples: this renderer …", flush=True)
-    _, trimmed, seconds = between(options, folder, [], (1, 2))
-    print(f"final, {n} samples: a classic bdpt …", flush=True)
-    _, classic, classic_seconds = between(options, folder, CLASSIC, (3, 4))
-    hours = seconds / n * CLASSIC_SAMPLES / 3600
+def errors(options, folder, more):
+    """Trimmed relMSE of `passes` samples a pixel of `final`, of several seeds, without the reference's own error."""
+    found = []
+    for seed in range(1, SEEDS + 1):
+        told = caustica(options, "compare", scene_file("final"), "--resolution", options.size, "--spp", options.passes,
+                        "--integrators", "bdpt", "--seed", seed, *more,
+                        "--reference", folder / "final" / "reference.exr", "-o", folder / "headline")
+        found.append(told["entries"][0]["metrics"]["trimmed_rel_mse"])
+    return found
+
+
+def headline(options, folder, own):
+    """The sentences about the reference work's samples. `own` is the reference's own relMSE."""
+    print("the headline …", flush=True)
+    n, mean = options.passes, lambda values: sum(values) / len(values)
+    ours, classic = (errors(options, folder, more) for more in ([], CLASSIC))
+    seconds, classic_seconds = (seconds_a_pass(options, folder, more) for more in ([], CLASSIC))
+    hours = lambda samples, each: f"{samples * each / 3600:.2f} h"
     # Errors fall as 1/samples: the classic one's at its 5000 is reached by so many of ours.
-    needed = trimmed / classic * CLASSIC_SAMPLES
-    same = seconds / n * needed / 3600
-    return f"""The reference work rendered `final` with {CLASSIC_SAMPLES} samples a pixel in {CLASSIC_HOURS} hours on its machine of
-2013 (its resolution is not told; {CLASSIC_SIZE.replace("x", " × ")} is supposed).
+    needed = (mean(ours) - own) / (mean(classic) - own) * CLASSIC_SAMPLES
+    spread = lambda values: ", ".join(f"{v:.4f}" for v in values)
+    return f"""The reference work rendered `final` with {CLASSIC_SAMPLES} samples a pixel in {CLASSIC_HOURS} hours, on its machine of 2013. Its
+resolution is not told; {CLASSIC_SIZE.replace("x", " × ")} is supposed.
 
 | | |
 |---|--:|
-| time of {CLASSIC_SAMPLES} samples a pixel here | {hours:.2f} h |
-| relMSE of {n} samples, without the 0.1 % worst pixels | {trimmed:.4f} |
-| the same for a classic bdpt ({n} independent samples, roulette after three bounces) | {classic:.4f} |
+| time of {CLASSIC_SAMPLES} samples a pixel here | **{hours(CLASSIC_SAMPLES, seconds)}** |
+| the same for a classic bdpt here | {hours(CLASSIC_SAMPLES, classic_seconds)} |
+| trimmed relMSE of {n} samples, seeds 1 to {SEEDS} | {spread(ours)} |
+| the same for a classic bdpt | {spread(classic)} |
 | samples that have the error of the classic one's {CLASSIC_SAMPLES} | {needed:.0f} |
-| time of these | {same:.2f} h |
-| time of the classic one's {CLASSIC_SAMPLES} samples here | {classic_seconds / n * CLASSIC_SAMPLES / 3600:.2f} h |
+| time of these | **{hours(needed, seconds)}** |
 
-Worked out from {n} passes of each, timed: every pass takes the same time, and the error of independent samples falls as
-one over their number. (That of ours falls a little faster, which is not counted.) The error is half of what two pictures
-of different seeds differ by.
+*Classic* is ours with independent samples and with roulette after three bounces (`{" ".join(CLASSIC)}`);
+it still looks for lamps by solid angle and leaves out what is negligible. Times are those of {TIMED_PASSES} passes, scaled: every
+pass takes the same. Errors are measured at {options.size.replace("x", " × ")}, without the reference's own, and taken to fall as one over the number of
+samples; that ours fall a little faster is not counted.
 """
 
 
 def table(options, folder):
-    """What path and bdpt come to on each scene, as rows of a table."""
-    rows = []
+    """What path and bdpt come to on each scene, as rows of a table; the first reference's own error; and notes."""
+    rows, owns, notes = [], {}, {}
     for name in options.scenes:
         print(f"{name} …", flush=True)
         told = caustica(options, "compare", scene_file(name), "--resolution", options.size,
                         "--integrators", "path,bdpt", "--time", options.time,
                         "--reference-time", options.reference_time, "-o", folder / name)
         path, bdpt = (entry["metrics"] for entry in told["entries"])
-        own = next((value for note, value in told["notes"] if "own" in note), "–")
-        errors = " | ".join(f"{m[k]:.3g}" for k in ("rel_mse", "trimmed_rel_mse") for m in (path, bdpt))
-        ratios = " | ".join(f"{path[k] / bdpt[k]:.3g}" for k in ("rel_mse", "trimmed_rel_mse"))
-        flip = " | ".join(f"{m['flip']:.3f}" if m["flip"] is not None else "–" for m in (path, bdpt))
-        rows.append(f"| [{name}](../scenes/{name}/README.md) | {errors} | **{ratios.split(' | ')[0]}** | "
-                    f"**{ratios.split(' | ')[1]}** | {flip} | {own.removeprefix('about ')} |")
-    return "\n".join(rows)
+        notes = dict(told["notes"])
+        own = owns[name] = float(notes["reference's own relMSE"])
+
+        def speed_up(key):
+            """By errors times seconds, the reference's own error left out of both."""
+            above, below = (m[key] and (m[key] - own) * m["seconds"] for m in (path, bdpt))
+            return f"**{above / below:.2g}**" if above and below and above > 0 and below > own * bdpt["seconds"] else "–"
+
+        show = lambda value, form: "–" if value is None else format(value, form)
+        cells = [show(m[k], ".3g") for k in ("rel_mse", "trimmed_rel_mse") for m in (path, bdpt)]
+        cells += [speed_up("rel_mse"), speed_up("trimmed_rel_mse")]
+        cells += [show(m["flip"], ".3f") for m in (path, bdpt)] + [f"{own:.2g}"]
+        rows.append(f"| [{name}](../scenes/{name}/README.md) | " + " | ".join(cells) + " |")
+    return "\n".join(rows), owns, notes
 
 
 def main():
     options = parsed()
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        rows = table(options, folder)
-        first = headline(options, folder)
-    threads = os.cpu_count()
+        rows, owns, notes = table(options, folder)
+        first = headline(options, folder, owns["final"]) if "final" in owns else ""
     options.output.write_text(f"""# Results
 
-Made by `python3 benches/results.py` on {datetime.date.today():%d %B %Y}, on {platform.machine()} with {threads} threads.
+Made by `benches/results.py` on {datetime.date.today().strftime("%d %B %Y").lstrip("0")}: Caustica {notes["version"]} on {notes["threads"]} threads of
+{processor()}.
 
 ## The reference work's picture
 
 {first}
 ## What light paths buy
 
-`path` and `bdpt`, {options.time:.0f} s each on {threads} threads, {options.size.replace("x", " × ")} pixels, against {options.reference_time:.0f} s of `bdpt` with other seeds (`caustica
-compare`). The speed-up is the ratio of errors, which for independent samples is that of times to the same error; where
-it is below one, `path` is the better choice. *Trimmed* leaves out the 0.1 % worst pixels. An error near the reference's
-own, in the last column, says little.
+`path` and `bdpt`, {options.time:g} s each, {notes["size"]}, against {options.reference_time:g} s of `bdpt` with other seeds
+(`caustica compare`). The speed-up is how much sooner `bdpt` has the same error: the ratio of errors times that of
+seconds, without the reference's own error, for errors fall as one over time. Where it is below one, `path` is the
+better choice; where `bdpt` is as good as its reference, none is told. *Trimmed* leaves out the 0.1 % worst pixels.
 
-| scene | relMSE `path` | `bdpt` | trimmed `path` | `bdpt` | speed-up | trimmed | ꟻLIP `path` | `bdpt` | reference's own relMSE |
+| scene | relMSE: `path` | `bdpt` | trimmed: `path` | `bdpt` | speed-up | trimmed | ꟻLIP: `path` | `bdpt` | reference's own |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 {rows}
 """)
