@@ -99,10 +99,10 @@ resolution is not told; {CLASSIC_SIZE.replace("x", " × ")} is supposed.
 | samples that have the error of the classic one's {CLASSIC_SAMPLES} | {needed:.0f} |
 | time of these | **{hours(needed, seconds)}** |
 
-*Classic* is ours with independent samples and with roulette after three bounces (`{" ".join(CLASSIC)}`);
-it still looks for lamps by solid angle and leaves out what is negligible. Times are those of {TIMED_PASSES} passes, scaled: every
-pass takes the same. Errors are measured at {options.size.replace("x", " × ")}, without the reference's own, and taken to fall as one over the number of
-samples; that ours fall a little faster is not counted.
+*Classic* is ours with independent samples and with roulette after three bounces:
+`{" ".join(CLASSIC)}`. It still looks for lamps by solid angle and leaves out what is negligible. Times
+are those of {TIMED_PASSES} passes, scaled: every pass takes the same. Errors are measured at {options.size.replace("x", " × ")}, without the
+reference's own, and taken to fall as one over the number of samples; that ours fall a little faster is not counted.
 """
 
 
@@ -139,8 +139,7 @@ def main():
         first = headline(options, folder, owns["final"]) if "final" in owns else ""
     options.output.write_text(f"""# Results
 
-Made by `benches/results.py` on {datetime.date.today().strftime("%d %B %Y").lstrip("0")}: Caustica {notes["version"]} on {notes["threads"]} threads of
-{processor()}.
+Made by `benches/results.py` on {datetime.date.today().strftime("%d %B %Y").lstrip("0")}: Caustica {notes["version"]} on {notes["threads"]} threads, {processor()}.
 
 ## The reference work's picture
 

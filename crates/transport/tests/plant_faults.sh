@@ -25,7 +25,7 @@ faults=$(cat <<TABLE
 adjoint|transport|s/let value = e.value \* (cos.abs() \/ self.cos(self.prev));/let value = e.value;/|$identity
 adjoint-sampled|transport|s/Walk::FromLight => s.value \* (cos.abs() \/ self.cos(self.prev)),/Walk::FromLight => s.value,/|$identity
 swapped-pdfs|transport|s/forward: e.to_light_pdf, reverse: e.to_camera_pdf }/forward: e.to_camera_pdf, reverse: e.to_light_pdf }/|$identity
-emission-for-next-event|transport|s/let found = lights.towards_pdf(from.point.position, lamp);/let found = pdf.point;/|$identity
+emission-for-next-event|transport|s/h.of(lights.towards_pdf(from.point.position, &end.lamp).0 \/ end.forward)/h.of(pdf.point.0 \/ end.forward)/|$identity
 paths-of-a-pass|transport|s/sums.total(from_camera \/ self.light_paths, /sums.total(from_camera, /|$identity
 crop-for-full|transport|s/light_paths: window.width as f32 \* window.height as f32,/light_paths: scene.film.width as f32 * scene.film.height as f32,/|$rows crop_window
 eta-squared|scene|s/Walk::FromCamera => share \* eta \* eta,/Walk::FromCamera => share,/|$identity
@@ -41,6 +41,9 @@ filter-normalisation|math|s/Shape::Box { height: 0.5 \/ radius }/Shape::Box { he
 specular-joined|transport|s/let recent = if step.delta { 0.0 } else { self.recent };/let recent = self.recent;/|$identity
 infinity-jacobian|transport|s/None => Edge::INFINITE,/None => Edge::finite(4.0),/|$identity
 mirrored-winding|scene|s/let mut outward = if mirrored { -normal } else { normal };/let mut outward = normal; let _ = mirrored;/|$rows mirrored_transforms
+candidates-unpaid|transport|s/let value = c.value \* (1.0 \/ survival);/let value = c.value;/|-p caustica-transport --test candidates
+stratum-shared|math|s/key: mix64(of_tile.wrapping_add(u64::from(walk) << 16)),/key: of_tile,/|-p caustica-transport --test samplers
+pyramid-remainder|render|s/let quanta = if i == last { left } else/let quanta = if false { left } else/|-p caustica-render --test pyramid
 seed-ignored|transport|s/seed: self.settings.seed,/seed: 0,/|$rows seeds
 TABLE
 )

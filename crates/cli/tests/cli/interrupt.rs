@@ -24,8 +24,12 @@ fn listens(child: &Child) -> bool {
 
 /// Starts a render that would take days, and returns once it listens to Ctrl-C.
 fn start(bench: &Bench, more: &[&str]) -> Child {
-    let args = [&["render", "scene.xml", "--spp", "4000000000", "--threads", "1"], more].concat();
-    let child = bench.command(&args).spawn().unwrap();
+    start_any(bench, &[&["render", "scene.xml", "--spp", "4000000000", "--threads", "1"], more].concat())
+}
+
+/// The same for any work.
+fn start_any(bench: &Bench, args: &[&str]) -> Child {
+    let child = bench.command(args).spawn().unwrap();
     let started = Instant::now();
     while !listens(&child) {
         assert!(started.elapsed() < PATIENCE);
@@ -81,4 +85,23 @@ fn the_second_one_ends_at_once() {
     assert!(before.elapsed() < Duration::from_secs(3));
     assert_eq!(ran.code, Some(130), "{ran:?}");
     assert!(bench.made().is_empty());
+}
+
+#[test]
+fn comparisons_pyramids_and_videos_keep_what_there_is() {
+    let bench = Bench::new();
+    for (args, made) in [
+        (&["compare", "scene.xml", "--time", "90s", "--reference-time", "50ms"][..], "scene-compare/index.html"),
+        (&["pyramid", "scene.xml", "--spp", "4000000000"], "scene-pyramid.html"),
+        (&["video", "converge", "scene.xml", "--spp", "4000000000"], "scene-converge.mp4"),
+        (&["video", "orbit", "scene.xml", "--spp", "2", "--seconds", "3600"], "scene-orbit.mp4"),
+    ] {
+        let child = start_any(&bench, args);
+        interrupt(&child);
+        let ran = Ran::from(child.wait_with_output().unwrap()).ok();
+        assert!(ran.err.contains("stopping after this pass"), "{args:?}: {}", ran.err);
+        assert!(!bench.bytes(made).is_empty());
+    }
+    let json = String::from_utf8(bench.bytes("scene-compare/report.json")).unwrap();
+    assert!(json.contains("stopped early"), "{json}");
 }
