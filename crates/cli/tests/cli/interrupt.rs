@@ -91,7 +91,10 @@ fn the_second_one_ends_at_once() {
 fn comparisons_pyramids_and_videos_keep_what_there_is() {
     let bench = Bench::new();
     for (args, made) in [
-        (&["compare", "scene.xml", "--time", "90s", "--reference-time", "50ms"][..], "scene-compare/index.html"),
+        (
+            &["compare", "scene.xml", "--time", "90s", "--reference-time", "50ms"][..],
+            "scene-compare/index.html",
+        ),
         (&["pyramid", "scene.xml", "--spp", "4000000000"], "scene-pyramid.html"),
         (&["video", "converge", "scene.xml", "--spp", "4000000000"], "scene-converge.mp4"),
         (&["video", "orbit", "scene.xml", "--spp", "2", "--seconds", "3600"], "scene-orbit.mp4"),
