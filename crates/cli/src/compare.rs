@@ -231,7 +231,7 @@ fn summary(told: &Told<'_>) -> String {
             figure(e.slope, 2)
         );
     }
-    for s in &told.comparison.speedups {
+    for s in told.comparison.speedups.iter().filter(|s| s.factor > 1.0) {
         let more = if s.at_least { "more than " } else { "" };
         text += &format!("{} reaches {}'s error {more}{:.1} times sooner\n", s.faster, s.slower, s.factor);
     }

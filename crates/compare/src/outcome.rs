@@ -192,27 +192,26 @@ impl Outcome {
         }
     }
 
-    /// How much sooner the best method has the error that each other one ends with, of those that reach all light.
+    /// How much sooner each method has the error that each other one ends with, of those that reach all light.
     fn speedups(&self) -> Result<Vec<Speedup>, CompareError> {
         let [width, height] = self.size;
         let reference = Image::new(width, height, &self.reference.pixels)?;
         let mean = errors(reference, reference)?.mean;
         let whole = |e: &&Entrant| (e.errors.mean - mean).abs() <= LOST * mean;
-        let error = |e: &Entrant| e.errors.rel_mse;
-        let best = self.entrants.iter().filter(whole).min_by(|a, b| error(a).total_cmp(&error(b)));
-        let Some(best) = best else { return Ok(Vec::new()) };
-        let speedup = |e: &Entrant| {
-            let (seconds, at_least) = match time_to_reach(&best.curve, error(e))? {
-                Reached::At(seconds) => (seconds, false),
-                Reached::Before(seconds) => (seconds, true),
-            };
-            let factor = e.report.seconds / seconds;
-            let (faster, slower) = (best.method.name.clone(), e.method.name.clone());
-            Some(Speedup { faster, slower, factor, at_least })
-        };
-        let others = self.entrants.iter().filter(whole).filter(|e| e.method.name != best.method.name);
-        Ok(others.filter_map(speedup).collect())
+        let racers: Vec<&Entrant> = self.entrants.iter().filter(whole).collect();
+        let pairs = racers.iter().flat_map(|faster| racers.iter().map(move |slower| (*faster, *slower)));
+        Ok(pairs.filter(|(a, b)| a.method.name != b.method.name).filter_map(speedup).collect())
     }
+}
+
+fn speedup((faster, slower): (&Entrant, &Entrant)) -> Option<Speedup> {
+    let (seconds, at_least) = match time_to_reach(&faster.curve, slower.errors.rel_mse)? {
+        Reached::At(seconds) => (seconds, false),
+        Reached::Before(seconds) => (seconds, true),
+    };
+    let factor = slower.report.seconds / seconds;
+    let (faster, slower) = (faster.method.name.clone(), slower.method.name.clone());
+    Some(Speedup { faster, slower, factor, at_least })
 }
 
 fn curve_point(p: &Point) -> CurvePoint {

@@ -29,7 +29,7 @@ pub struct Comparison {
     pub entries: Vec<Entry>,
     /// Parts of the image worth a look.
     pub insets: Vec<Inset>,
-    /// Who reaches whose error sooner.
+    /// Who reaches whose error how much sooner, of all pairs for which that is known.
     pub speedups: Vec<Speedup>,
 }
 
@@ -121,7 +121,7 @@ pub struct Speedup {
     pub faster: String,
     /// Name of the other one.
     pub slower: String,
-    /// Ratio of times to the same error. Sentences whose factor is not finite are left out of the page.
+    /// Ratio of times to the same error; below one it is later. Factors that are not finite are left out of the page.
     pub factor: f64,
     /// Whether it is more than that: the error was reached before it was first measured.
     pub at_least: bool,
@@ -134,6 +134,7 @@ struct Page<'a> {
     scene: &'a str,
     notes: &'a [(String, String)],
     speedups: Vec<Sentence<'a>>,
+    times: Times<'a>,
     style: &'static str,
     script: &'static str,
     data: String,
@@ -151,7 +152,8 @@ pub fn comparison_page(comparison: &Comparison) -> Result<String, ReportError> {
         title: &comparison.title,
         scene: &comparison.scene,
         notes: &comparison.notes,
-        speedups: sentences(&comparison.speedups),
+        speedups: sentences(comparison),
+        times: Times::new(comparison),
         style: STYLE,
         script: SCRIPT,
         data: script_json(comparison)?,
@@ -227,13 +229,45 @@ struct Sentence<'a> {
     at_least: bool,
 }
 
-fn sentences(speedups: &[Speedup]) -> Vec<Sentence<'_>> {
-    let known = speedups.iter().filter(|s| s.factor.is_finite() && s.factor > 0.0);
-    fn sentence(s: &Speedup) -> Sentence<'_> {
+/// What the best image does better than the others: the one that is sooner than most.
+fn sentences(comparison: &Comparison) -> Vec<Sentence<'_>> {
+    let sooner = |s: &&Speedup| known(s) && s.factor > 1.0;
+    let wins = |name: &str| comparison.speedups.iter().filter(sooner).filter(|s| s.faster == name).count();
+    // The last of those with as many: images come in the order of what is hoped of them.
+    let best = comparison.entries.iter().map(|e| e.shown.name.as_str()).max_by_key(|name| wins(name));
+    let told = comparison.speedups.iter().filter(sooner).filter(|s| Some(s.faster.as_str()) == best);
+    told.map(Sentence::new).collect()
+}
+
+fn known(s: &Speedup) -> bool {
+    s.factor.is_finite() && s.factor > 0.0
+}
+
+impl<'a> Sentence<'a> {
+    fn new(s: &'a Speedup) -> Self {
         let Speedup { faster, slower, factor, at_least } = s;
-        Sentence { faster, slower, factor: factor_text(*factor), at_least: *at_least }
+        Self { faster, slower, factor: factor_text(*factor), at_least: *at_least }
     }
-    known.map(sentence).collect()
+}
+
+/// A table of all speed-ups: whoever is named at a row's start reaches the errors of the columns.
+struct Times<'a> {
+    names: Vec<&'a str>,
+    rows: Vec<(&'a str, Vec<Option<Sentence<'a>>>)>,
+}
+
+impl<'a> Times<'a> {
+    fn new(comparison: &'a Comparison) -> Self {
+        let all: Vec<&Speedup> = comparison.speedups.iter().filter(|s| known(s)).collect();
+        let is_named = |name: &&str| all.iter().any(|s| s.faster == *name || s.slower == *name);
+        let names: Vec<&str> =
+            comparison.entries.iter().map(|e| e.shown.name.as_str()).filter(is_named).collect();
+        let cell = |faster: &str, slower: &str| {
+            all.iter().find(|s| s.faster == faster && s.slower == slower).map(|s| Sentence::new(s))
+        };
+        let row = |faster: &&'a str| (*faster, names.iter().map(|slower| cell(faster, slower)).collect());
+        Self { rows: names.iter().map(row).collect(), names }
+    }
 }
 
 /// A factor as people say it: two digits, or all that are left of the point.

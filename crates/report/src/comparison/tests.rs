@@ -117,3 +117,36 @@ fn two_files_are_written() {
     let error = write_comparison(&comparison(), &blocked).unwrap_err();
     assert!(matches!(error, ReportError::Folder { .. }), "{error}");
 }
+
+/// The best image's gains as sentences, all pairs in a table.
+#[test]
+fn gains_are_sentences_and_a_table() {
+    let speedup = |faster: &str, slower: &str, factor| Speedup {
+        faster: faster.into(),
+        slower: slower.into(),
+        factor,
+        at_least: factor > 100.0,
+    };
+    let mut page = comparison();
+    page.entries = ["naive", "path", "bdpt", "light"].map(|name| entry(name, 3, 2)).into();
+    page.speedups = vec![
+        speedup("path", "naive", 3.0),
+        speedup("path", "bdpt", 0.25),
+        speedup("bdpt", "naive", 120.0),
+        speedup("bdpt", "path", 4.2),
+        speedup("bdpt", "light", f64::NAN),
+    ];
+    let told = sentences(&page);
+    let words: Vec<_> = told.iter().map(|s| (s.faster, s.slower, s.factor.as_str(), s.at_least)).collect();
+    assert_eq!(words, [("bdpt", "naive", "120", true), ("bdpt", "path", "4.2", false)]);
+    let times = Times::new(&page);
+    assert_eq!(times.names, ["naive", "path", "bdpt"]);
+    let row =
+        |i: usize| times.rows[i].1.iter().map(|c| c.as_ref().map_or("–", |s| &s.factor)).collect::<Vec<_>>();
+    assert_eq!([row(0), row(1), row(2)], [["–"; 3], ["3.0", "–", "0.2"], ["120", "4.2", "–"]]);
+    let html = comparison_page(&page).unwrap();
+    assert!(html.contains("bdpt</em> reaches") && !html.contains("path</em> reaches"), "{}", &html[..2000]);
+    assert!(html.contains("&gt; 120× sooner"));
+    page.speedups.clear();
+    assert!(!comparison_page(&page).unwrap().contains("id=\"times\""));
+}
