@@ -1,30 +1,15 @@
 """The scene file of `cornell`."""
 
 from .cornell import colours
+from .nori import head
 
 # Luminance of the lamp: the published spectrum has no absolute unit.
 LUMINANCE = 20.0
 
-HEAD = """<?xml version="1.0" encoding="utf-8"?>
-<!-- Written by scenes/generate.py. The Cornell box as Cornell's Program of Computer Graphics measured it, in metres.
-     Colours are the published spectra under the lamp's, in linear sRGB. -->
-<scene>
-	<integrator type="bdpt"/>
-	<camera type="perspective">
-		<transform name="toWorld">
-			<lookat origin="0.278, 0.273, -0.8" target="0.278, 0.273, 0" up="0, 1, 0"/>
-		</transform>
-		<!-- A film 25 mm wide, 35 mm behind the lens -->
-		<float name="fov" value="39.3077"/>
-		<integer name="width" value="600"/>
-		<integer name="height" value="600"/>
-		<rfilter type="tent"/>
-	</camera>
-	<sampler type="independent">
-		<integer name="sampleCount" value="256"/>
-	</sampler>
-
-"""
+ABOUT = """The Cornell box as Cornell's Program of Computer Graphics measured it, in metres.
+     Colours are the published spectra under the lamp's, in linear sRGB."""
+LENS = "\t\t<!-- A film 25 mm wide, 35 mm behind the lens -->\n"
+LOOK = ((0.278, 0.273, -0.8), (0.278, 0.273, 0))
 
 PART = """	<mesh type="obj">
 		<string name="filename" value="meshes/{mesh}.obj"/>
@@ -44,4 +29,4 @@ def scene():
     parts += [(name, text(rgb["white"]), "") for name in ("short", "tall")]
     # The lamp's own paint was taken to be white of reflectance 0.78.
     parts.append(("lamp", "0.78, 0.78, 0.78", LAMP.format(colour=text(rgb["lamp"], LUMINANCE))))
-    return HEAD + "".join(PART.format(mesh=m, colour=c, rest=r) for m, c, r in parts) + "</scene>\n"
+    return head(ABOUT, LOOK, 39.3077, (600, 600), LENS) + "".join(PART.format(mesh=m, colour=c, rest=r) for m, c, r in parts) + "</scene>\n"

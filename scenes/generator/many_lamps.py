@@ -2,6 +2,8 @@
 
 from math import cos, pi, sin, sqrt
 
+from .nori import head
+
 LAMPS = 480
 # Turning by the golden angle spreads points evenly (Vogel, Mathematical Biosciences 44, 1979).
 GOLDEN_ANGLE = pi * (3 - sqrt(5))
@@ -10,24 +12,9 @@ GOLDEN_ANGLE = pi * (3 - sqrt(5))
 COLOURS = ((1.0, 0.78, 0.42), (1.0, 0.48, 0.16), (1.0, 0.20, 0.16), (0.72, 0.14, 0.50), (0.25, 0.22, 0.90),
            (0.10, 0.50, 0.90), (0.12, 0.75, 0.70))
 
-HEAD = """<?xml version="1.0" encoding="utf-8"?>
-<!-- Written by scenes/generate.py. {lamps} lanterns of all colours float over a dark pool, around a ball of glass. -->
-<scene>
-	<integrator type="bdpt"/>
-	<camera type="perspective">
-		<transform name="toWorld">
-			<lookat origin="0, 4.3, 6.3" target="0, 0.22, 0.1" up="0, 1, 0"/>
-		</transform>
-		<float name="fov" value="38"/>
-		<integer name="width" value="800"/>
-		<integer name="height" value="600"/>
-		<rfilter type="tent"/>
-	</camera>
-	<sampler type="independent">
-		<integer name="sampleCount" value="256"/>
-	</sampler>
+ABOUT = f"{LAMPS} lanterns of all colours float over a dark pool, around a ball of glass."
 
-	<!-- The pool, and the sky at dusk -->
+PLACE = """	<!-- The pool, and the sky at dusk -->
 	<mesh type="obj">
 		<string name="filename" value="meshes/quad.obj"/>
 		<transform name="toWorld"><scale value="14, 14, 1"/><rotate axis="1, 0, 0" angle="-90"/></transform>
@@ -57,7 +44,8 @@ LAMP = """	<mesh type="sphere">
 def scene():
     """The text of the scene file."""
     lamps = "".join(lamp(i) for i in range(LAMPS))
-    return HEAD.format(lamps=LAMPS) + "\n\t<!-- The lanterns -->\n" + lamps + "</scene>\n"
+    look = ((0, 4.3, 6.3), (0, 0.22, 0.1))
+    return head(ABOUT, look, 38, (800, 600)) + PLACE + "\n\t<!-- The lanterns -->\n" + lamps + "</scene>\n"
 
 
 def lamp(i):

@@ -2,6 +2,8 @@
 
 from math import atan2, degrees, hypot, pi
 
+from .nori import head
+
 EYE = (0.0, 1.6, 13.0)
 LAMPS_Y, LAMPS_Z = 2.3, -1.2
 
@@ -12,25 +14,10 @@ LAMPS = ((-3.3, 0.04, (0.35, 0.60, 1.0)), (-1.2, 0.12, (0.35, 0.95, 0.75)), (1.0
 PLATES = ((0.008, 0.42, -0.5), (0.03, -0.28, 0.75), (0.09, -0.85, 2.15), (0.22, -1.32, 3.7))
 POWER = 34.0
 
-HEAD = """<?xml version="1.0" encoding="utf-8"?>
-<!-- Written by scenes/generate.py. Lamps of different size, seen in plates of different roughness: small lamps in
-     rough plates are found by looking for them, large ones in smooth plates by following the reflection. -->
-<scene>
-	<integrator type="bdpt"/>
-	<camera type="perspective">
-		<transform name="toWorld">
-			<lookat origin="{eye}" target="0, 0.35, 0" up="0, 1, 0"/>
-		</transform>
-		<float name="fov" value="40"/>
-		<integer name="width" value="800"/>
-		<integer name="height" value="600"/>
-		<rfilter type="tent"/>
-	</camera>
-	<sampler type="independent">
-		<integer name="sampleCount" value="256"/>
-	</sampler>
+ABOUT = """Lamps of different size, seen in plates of different roughness: small lamps in
+     rough plates are found by looking for them, large ones in smooth plates by following the reflection."""
 
-	<mesh type="obj">
+FLOOR = """	<mesh type="obj">
 		<string name="filename" value="meshes/floor.obj"/>
 		<bsdf type="diffuse"><color name="albedo" value="0.36, 0.37, 0.40"/></bsdf>
 	</mesh>
@@ -56,7 +43,7 @@ LAMP = """	<mesh type="sphere">
 
 def scene():
     """The text of the scene file."""
-    text = HEAD.format(eye=", ".join(map(str, EYE))) + "\n\t<!-- The plates, from smooth to rough -->\n"
+    text = head(ABOUT, (EYE, (0, 0.35, 0)), 40, (800, 600)) + FLOOR + "\n\t<!-- The plates, from smooth to rough -->\n"
     for alpha, y, z in PLATES:
         text += PLATE.format(half=0.46, angle=tilt(y, z), y=y, z=z, alpha=alpha)
     text += "\n\t<!-- The lamps -->\n"

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use caustica_film::write_srgb_png;
+use caustica_film::{Develop, to_display, write_srgb_png};
+use caustica_math::Rgb;
 
 use crate::CanvasError;
 
@@ -77,6 +78,16 @@ impl Canvas {
             return Err(CanvasError::Count { count: pixels.len(), width, height });
         }
         Ok(Self { width, height, pixels })
+    }
+
+    /// A canvas of linear pixels as a display shows them. An error if their number is not `width` · `height`.
+    pub fn developed(
+        pixels: &[Rgb],
+        [width, height]: [u32; 2],
+        develop: Develop,
+    ) -> Result<Self, CanvasError> {
+        let shown = |p: &Rgb| to_display(*p, develop.exposure, develop.tone_map);
+        Self::from_pixels(width, height, pixels.iter().map(shown).collect())
     }
 
     /// Whether a canvas of this size can be made, for sizes that are still being added up.

@@ -3,7 +3,7 @@ use std::time::Duration;
 
 use caustica::Settings;
 use caustica::description::{Crop, Integrator};
-use caustica::film::ToneMap;
+use caustica::film::{self, ToneMap};
 use caustica::math::Sampler;
 use caustica::scene::bvh::TreeQuality;
 use caustica::session::INTEGRATOR_NAMES;
@@ -51,15 +51,15 @@ pub enum Command {
 
 impl Arguments {
     /// How to speak: in JSON, and of nothing but errors.
-    pub fn voice(&self) -> (bool, bool) {
+    pub fn voice(&self) -> Voice {
         match &self.command {
-            Command::Render(a) => (a.json, a.quiet),
-            Command::Compare(a) => (a.json, a.quiet),
-            Command::Pyramid(a) => (a.json, a.quiet),
-            Command::Video(a) => (a.clip().json, a.clip().quiet),
-            Command::Info(a) => (a.json, false),
-            Command::Test(a) => (a.json, false),
-            Command::Develop(_) => (false, false),
+            Command::Render(a) => a.voice,
+            Command::Compare(a) => a.voice,
+            Command::Pyramid(a) => a.voice,
+            Command::Video(a) => a.clip().voice,
+            Command::Info(a) => Voice { json: a.json, quiet: false },
+            Command::Test(a) => Voice { json: a.json, quiet: false },
+            Command::Develop(_) => Voice { json: false, quiet: false },
         }
     }
 }
@@ -83,6 +83,35 @@ pub struct Source {
     pub tree: TreeChoice,
 }
 
+/// For how long to render.
+#[derive(Debug, Args)]
+pub struct Length {
+    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: Option<u32>,
+    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
+    #[arg(long, value_parser = parse_duration)]
+    pub time: Option<Duration>,
+}
+
+impl Length {
+    /// Samples per pixel at most, where the scene says `usual`.
+    pub fn samples(&self, usual: u32) -> u32 {
+        self.spp.unwrap_or(if self.time.is_some() { u32::MAX } else { usual })
+    }
+}
+
+/// How to speak.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Voice {
+    /// Say nothing but errors: no progress bar, no warnings, no summary
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Print the result, warnings or the error as one JSON object on the standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
 #[derive(Debug, Args)]
 pub struct Render {
     #[command(flatten)]
@@ -90,12 +119,8 @@ pub struct Render {
     /// Output files; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
     #[arg(short, long)]
     pub output: Option<PathBuf>,
-    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub spp: Option<u32>,
-    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
-    #[arg(long, value_parser = parse_duration)]
-    pub time: Option<Duration>,
+    #[command(flatten)]
+    pub length: Length,
     #[command(flatten)]
     pub method: Method,
     /// What becomes of the light image, which holds what light paths splat: most caustics
@@ -106,12 +131,8 @@ pub struct Render {
     /// Print one sample of the render that the other options ask for, strategy by strategy, instead of rendering
     #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
     pub replay: Option<([u32; 2], u32)>,
-    /// Say nothing but errors: no progress bar, no warnings, no summary
-    #[arg(short, long)]
-    pub quiet: bool,
-    /// Print the result, warnings or the error as one JSON object on the standard output
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub voice: Voice,
 }
 
 #[derive(Debug, Args)]
@@ -139,12 +160,8 @@ pub struct Compare {
     pub integrators: Vec<String>,
     #[command(flatten)]
     pub sampling: Sampling,
-    /// Say nothing but errors: no progress bar, no warnings, no summary
-    #[arg(short, long)]
-    pub quiet: bool,
-    /// Print the result, warnings or the error as one JSON object on the standard output
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub voice: Voice,
 }
 
 #[derive(Debug, Args)]
@@ -155,12 +172,8 @@ pub struct Pyramid {
     /// [default: SCENE-pyramid beside the scene]
     #[arg(short, long)]
     pub output: Option<PathBuf>,
-    /// Samples per pixel [default: as the scene says, or without limit if --time is given]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub spp: Option<u32>,
-    /// Stop after this long, with the pass that runs: 90, 60s, 5m, 2h
-    #[arg(long, value_parser = parse_duration)]
-    pub time: Option<Duration>,
+    #[command(flatten)]
+    pub length: Length,
     /// Rows: the most edges of paths whose strategies are shown. Longer paths are rendered, and added to the whole
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=16))]
     pub rows: u32,
@@ -168,12 +181,8 @@ pub struct Pyramid {
     pub sampling: Sampling,
     #[command(flatten)]
     pub look: Look,
-    /// Say nothing but errors: no progress bar, no warnings, no summary
-    #[arg(short, long)]
-    pub quiet: bool,
-    /// Print the result, warnings or the error as one JSON object on the standard output
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub voice: Voice,
 }
 
 #[derive(Debug, Subcommand)]
@@ -201,12 +210,8 @@ impl Video {
 pub struct Converge {
     #[command(flatten)]
     pub clip: Clip,
-    /// Samples per pixel at the end [default: as the scene says, or without limit if --time is given]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub spp: Option<u32>,
-    /// Render for so long at most: 90, 60s, 5m, 2h
-    #[arg(long, value_parser = parse_duration)]
-    pub time: Option<Duration>,
+    #[command(flatten)]
+    pub length: Length,
     /// How the picture with its light image and that without share the frame
     #[arg(long, value_enum, default_value_t = LayoutChoice::Wipe)]
     pub layout: LayoutChoice,
@@ -270,12 +275,8 @@ pub struct Clip {
     pub quality: u8,
     #[command(flatten)]
     pub look: Look,
-    /// Say nothing but errors: no progress bar, no warnings, no summary
-    #[arg(short, long)]
-    pub quiet: bool,
-    /// Print the result, warnings or the error as one JSON object on the standard output
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub voice: Voice,
 }
 
 /// How light is found.
@@ -354,6 +355,13 @@ pub struct Look {
     /// Tone map: srgb (clipped) or agx (filmic)
     #[arg(long, value_name = "NAME", default_value_t = ToneMap::Srgb)]
     pub tone_map: ToneMap,
+}
+
+impl Look {
+    /// The same for the library.
+    pub fn develop(self) -> film::Develop {
+        film::Develop { exposure: self.exposure, tone_map: self.tone_map }
+    }
 }
 
 #[derive(Debug, Args)]

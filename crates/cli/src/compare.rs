@@ -8,7 +8,7 @@ use std::time::Duration;
 use caustica::description::Integrator;
 use caustica::film::{LightImage, Metadata, Window, check_writable, write_exr, write_layers};
 use caustica::scene::Diagnostic;
-use caustica::session::Budget;
+use caustica::session::{Budget, available_threads};
 use caustica::{Rgb, Scene, import};
 use caustica_compare::{
     CompareError, EYE_ONLY, Entrant, Event, Made, Method, Options, Outcome, Reference, ReferenceChoice,
@@ -166,10 +166,7 @@ fn notes(args: &Compare, scene: &Scene, budget: Budget) -> Vec<(String, String)>
         Some(time) => format!("{} s", time.as_secs_f64()),
         None => format!("{} samples a pixel", budget.samples),
     };
-    let threads = args
-        .source
-        .threads
-        .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let threads = args.source.threads.map_or_else(available_threads, usize::from);
     let mut notes: Vec<(String, String)> = [
         ("size", format!("{} × {} pixels", window.width, window.height)),
         ("each integrator", each),

@@ -22,7 +22,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command};
+use args::{Arguments, Command, Voice};
 use console::Console;
 use failure::Failure;
 
@@ -34,7 +34,7 @@ fn main() -> ExitCode {
         }
         Err(e) => e.exit(),
     };
-    let (json, quiet) = arguments.voice();
+    let Voice { json, quiet } = arguments.voice();
     let mut console = Console::new(json, quiet);
     let result = match arguments.command {
         Command::Render(a) => render::run(&a, &mut console),

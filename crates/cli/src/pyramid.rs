@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use caustica::description::Integrator;
-use caustica::film::{Film, Metadata, check_writable, to_display, write_layers};
+use caustica::film::{Film, Metadata, check_writable, write_layers};
 use caustica::session::pyramid::{Layer, Pyramid};
 use caustica::{LightImage, RenderOptions, Rgb};
 use caustica_canvas::{Canvas, CanvasError, Cell, LegendLine, Row, SheetStyle, sheet};
 use caustica_report::{StrategyImages, write_pyramid};
 use serde::Serialize;
 
-use crate::args::{Look, Pyramid as Arguments};
+use crate::args::Pyramid as Arguments;
 use crate::compare::report_failure;
 use crate::console::Console;
 use crate::failure::Failure;
@@ -45,8 +45,8 @@ pub fn run(args: &Arguments, console: &mut Console) -> Result<ExitCode, Failure>
     let files = Files::new(args)?;
     let options = RenderOptions {
         settings: args.sampling.settings(Integrator::Bdpt),
-        samples: args.spp.unwrap_or(if args.time.is_some() { u32::MAX } else { opened.samples }),
-        time: args.time,
+        samples: args.length.samples(opened.samples),
+        time: args.length.time,
         threads: args.source.threads.map(usize::from),
     };
     let pyramid = Pyramid::new(&opened.scene, options, args.rows)?;
@@ -125,10 +125,11 @@ fn save(
         })
         .collect();
     let rest = pixels(pyramid.rest());
+    let longer: &[Rgb] = if rest.iter().all(|p| *p == Rgb::BLACK) { &[] } else { &rest };
     let notes = notes(args, outcome);
     save_layers(pyramid, (&images, &rest), (&files.layers, &notes))?;
     for (path, weighted) in [(&files.weighted, true), (&files.unweighted, false)] {
-        sheet_of((&images, &rest), (window.width, window.height), weighted, args)
+        sheet_of((&images, longer), [window.width, window.height], weighted, args)
             .and_then(|canvas| canvas.write_png(path))
             .map_err(|e| Failure::Output(format!("cannot write `{}`: {e}", path.display())))?;
     }
@@ -137,7 +138,7 @@ fn save(
         width: window.width,
         height: window.height,
         strategies: images,
-        rest: if rest.iter().all(|p| *p == Rgb::BLACK) { Vec::new() } else { rest },
+        rest: longer.to_vec(),
         notes,
     };
     write_pyramid(&page, &files.page).map_err(|e| report_failure(&files.page, e))
@@ -157,18 +158,20 @@ fn notes(args: &Arguments, outcome: &Outcome) -> Vec<(String, String)> {
     notes
 }
 
-/// All strategies' pictures, weighted or not, one row a path length.
+/// All strategies' pictures, weighted or not, one row a path length; and that of longer paths, if there is one.
 fn sheet_of(
-    (images, rest): (&[StrategyImages], &[Rgb]),
-    (width, height): (u32, u32),
+    (images, longer): (&[StrategyImages], &[Rgb]),
+    size: [u32; 2],
     weighted: bool,
     args: &Arguments,
 ) -> Result<Canvas, CanvasError> {
-    let (small_width, small_height) = cell_size(width, height);
+    let (small_width, small_height) = cell_size(size);
+    let develop = args.look.develop();
+    let small =
+        |pixels: &[Rgb]| Canvas::developed(pixels, size, develop)?.scaled_down(small_width, small_height);
     let cell = |i: &StrategyImages| -> Result<Cell, CanvasError> {
         let pixels = if weighted { &i.weighted } else { &i.unweighted };
-        let picture = display(pixels, (width, height), args.look)?.scaled_down(small_width, small_height)?;
-        Ok(Cell::new(picture, format!("s = {}, t = {}", i.s, i.t)))
+        Ok(Cell::new(small(pixels)?, format!("s = {}, t = {}", i.s, i.t)))
     };
     let edges = |i: &StrategyImages| i.s + i.t - 1;
     let mut rows = Vec::new();
@@ -180,9 +183,8 @@ fn sheet_of(
         let cells = row.iter().map(|i| cell(i).map(Some)).collect::<Result<_, _>>()?;
         rows.push(Row { label, cells });
     }
-    if weighted && rest.iter().any(|p| *p != Rgb::BLACK) {
-        let picture = display(rest, (width, height), args.look)?.scaled_down(small_width, small_height)?;
-        let cell = Cell::new(picture, "all longer paths");
+    if weighted && !longer.is_empty() {
+        let cell = Cell::new(small(longer)?, "all longer paths");
         rows.push(Row { label: "longer".to_owned(), cells: vec![Some(cell)] });
     }
     let what = if weighted { "weighted: these add up to the picture" } else { "without weights" };
@@ -197,19 +199,13 @@ fn sheet_of(
 }
 
 /// The size of a picture on the sheet.
-fn cell_size(width: u32, height: u32) -> (u32, u32) {
+fn cell_size([width, height]: [u32; 2]) -> (u32, u32) {
     let longest = width.max(height);
     if longest <= LARGEST_CELL {
         return (width, height);
     }
     let scaled = |side: u32| (u64::from(side) * u64::from(LARGEST_CELL) / u64::from(longest)).max(1) as u32;
     (scaled(width), scaled(height))
-}
-
-/// Linear pixels as a display shows them.
-pub fn display(pixels: &[Rgb], (width, height): (u32, u32), look: Look) -> Result<Canvas, CanvasError> {
-    let shown = pixels.iter().map(|p| to_display(*p, look.exposure, look.tone_map)).collect();
-    Canvas::from_pixels(width, height, shown)
 }
 
 /// The whole as `combined`, what longer paths add as `rest`, and every strategy weighted as `s1t2` and unweighted as

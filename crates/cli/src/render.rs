@@ -2,7 +2,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use caustica::description::Integrator;
-use caustica::film::{self, write_exr, write_png};
+use caustica::film::{write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::session::{integrator_by_name, integrator_name};
 use caustica::{LightImage, Picture, RenderOptions, Report, Scene, Session, Settings};
@@ -39,8 +39,8 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let outputs = Outputs::new(args)?;
     let options = RenderOptions {
         settings,
-        samples: args.spp.unwrap_or(if args.time.is_some() { u32::MAX } else { samples }),
-        time: args.time,
+        samples: args.length.samples(samples),
+        time: args.length.time,
         threads: args.source.threads.map(usize::from),
     };
     let session = Session::new(&scene, options)?;
@@ -151,9 +151,8 @@ fn save(
 
 /// Writes what a picture looks like.
 pub fn save_png(to: &Path, picture: &Picture, light_image: LightImage, look: Look) -> Result<(), Failure> {
-    let develop = film::Develop { exposure: look.exposure, tone_map: look.tone_map };
     let window = picture.window;
-    write_png(to, window.width, window.height, &picture.combined(light_image), develop)
+    write_png(to, window.width, window.height, &picture.combined(light_image), look.develop())
         .map_err(|e| Failure::output(to, e))
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use caustica::description::Integrator;
-use caustica::film::{Develop, check_writable};
+use caustica::film::check_writable;
 use caustica::scene::Diagnostic;
 use caustica::session::integrator_name;
 use caustica::transport::Kernel;
@@ -51,7 +51,7 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
         frames_per_second: clip.fps,
         seconds: clip.seconds,
         quality: clip.quality,
-        develop: Develop { exposure: clip.look.exposure, tone_map: clip.look.tone_map },
+        develop: clip.look.develop(),
     };
     let control = &interrupts.control;
     let summary = match args {
@@ -119,8 +119,8 @@ fn layout(asked: Layout, settings: &Settings, scene: &Scene, console: &mut Conso
 fn converging(a: &args::Converge, opened: &Opened) -> Converge {
     let scene: &Scene = &opened.scene;
     let settings = settings(&a.method, scene, opened.integrator);
-    let samples = a.spp.unwrap_or(if a.time.is_some() { u32::MAX } else { opened.samples });
-    let render = RenderOptions { time: a.time, ..render(&a.clip, settings, samples) };
+    let samples = a.length.samples(opened.samples);
+    let render = RenderOptions { time: a.length.time, ..render(&a.clip, settings, samples) };
     Converge { render, layout: a.layout.into(), hold: a.hold }
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use caustica_canvas::{Canvas, CanvasError};
-use caustica_film::{Develop, to_display};
+use caustica_film::Develop;
 use caustica_math::Rgb;
 use caustica_render::{Control, RenderError};
 use caustica_scene::{Diagnostic, Scene};
@@ -43,9 +43,8 @@ impl ClipOptions {
     }
 
     /// Linear pixels as a display shows them.
-    pub(crate) fn show(&self, pixels: &[Rgb], [width, height]: [u32; 2]) -> Result<Canvas, CanvasError> {
-        let shown = |p: &Rgb| to_display(*p, self.develop.exposure, self.develop.tone_map);
-        Canvas::from_pixels(width, height, pixels.iter().map(shown).collect())
+    pub(crate) fn show(&self, pixels: &[Rgb], size: [u32; 2]) -> Result<Canvas, CanvasError> {
+        Canvas::developed(pixels, size, self.develop)
     }
 }
 

@@ -1,29 +1,17 @@
 //! Error against time.
 
+use caustica_report::CurvePoint;
 use libm::{exp, log};
 
-/// The error at one moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
-    /// Seconds of rendering so far.
-    pub seconds: f64,
-    /// Samples per pixel so far.
-    pub samples: u64,
-    /// Mean of squared relative errors.
-    pub rel_mse: f64,
-    /// The same without the worst 0.1 % of pixels.
-    pub trimmed_rel_mse: f64,
-}
-
 /// Logarithms of time and error of the points that have both.
-fn logarithms(curve: &[Point]) -> Vec<[f64; 2]> {
-    let finite = |p: &&Point| p.seconds > 0.0 && p.rel_mse > 0.0 && p.rel_mse.is_finite();
+fn logarithms(curve: &[CurvePoint]) -> Vec<[f64; 2]> {
+    let finite = |p: &&CurvePoint| p.seconds > 0.0 && p.rel_mse > 0.0 && p.rel_mse.is_finite();
     curve.iter().filter(finite).map(|p| [log(p.seconds), log(p.rel_mse)]).collect()
 }
 
 /// The slope of log(relMSE) over log(seconds), by least squares: −1 for independent samples of finite variance.
 /// `None` for fewer than three points.
-pub fn slope(curve: &[Point]) -> Option<f64> {
+pub fn slope(curve: &[CurvePoint]) -> Option<f64> {
     let points = logarithms(curve);
     if points.len() < 3 {
         return None;
@@ -48,7 +36,7 @@ pub enum Reached {
 
 /// When the error had come down to `rel_mse` for good: between points by a straight line in logarithms. `None` if it
 /// never does.
-pub fn time_to_reach(curve: &[Point], rel_mse: f64) -> Option<Reached> {
+pub fn time_to_reach(curve: &[CurvePoint], rel_mse: f64) -> Option<Reached> {
     let points = logarithms(curve);
     let target = log(rel_mse);
     let last_above = points.iter().rposition(|p| p[1] > target);
@@ -66,8 +54,9 @@ pub fn time_to_reach(curve: &[Point], rel_mse: f64) -> Option<Reached> {
 mod tests {
     use super::*;
 
-    fn curve(points: &[(f64, f64)]) -> Vec<Point> {
-        let point = |&(seconds, rel_mse)| Point { seconds, samples: 1, rel_mse, trimmed_rel_mse: rel_mse };
+    fn curve(points: &[(f64, f64)]) -> Vec<CurvePoint> {
+        let point =
+            |&(seconds, rel_mse)| CurvePoint { seconds, samples: 1.0, rel_mse, trimmed_rel_mse: rel_mse };
         points.iter().map(point).collect()
     }
 

@@ -8,7 +8,7 @@ mod method;
 mod outcome;
 mod race;
 
-pub use curve::{Point, Reached, slope, time_to_reach};
+pub use curve::{Reached, slope, time_to_reach};
 pub use insets::{Region, most_different};
 pub use method::{DEFAULT_METHODS, EYE_ONLY, Method};
 pub use outcome::{CompareError, Entrant, Made, Outcome, Reference};

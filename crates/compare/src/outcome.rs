@@ -8,7 +8,7 @@ use caustica_render::{RenderError, Report};
 use caustica_report::{Comparison, CurvePoint, Entry, Inset, Metrics, Shown, Speedup};
 use caustica_scene::Scene;
 
-use crate::curve::{Point, Reached, slope, time_to_reach};
+use crate::curve::{Reached, slope, time_to_reach};
 use crate::insets::{Region, most_different};
 use crate::method::Method;
 
@@ -99,7 +99,7 @@ pub struct Entrant {
     /// HDR-ꟻLIP; `None` if the reference is black.
     pub flip: Option<FlipMap>,
     /// How the error fell.
-    pub curve: Vec<Point>,
+    pub curve: Vec<CurvePoint>,
 }
 
 /// All pictures of a comparison.
@@ -188,7 +188,7 @@ impl Outcome {
             },
             flip_map: flip.as_ref().map(|m| m.values.clone()),
             slope: slope(curve),
-            curve: curve.iter().map(curve_point).collect(),
+            curve: curve.clone(),
         }
     }
 
@@ -212,15 +212,6 @@ fn speedup((faster, slower): (&Entrant, &Entrant)) -> Option<Speedup> {
     let factor = slower.report.seconds / seconds;
     let (faster, slower) = (faster.method.name.clone(), slower.method.name.clone());
     Some(Speedup { faster, slower, factor, at_least })
-}
-
-fn curve_point(p: &Point) -> CurvePoint {
-    CurvePoint {
-        seconds: p.seconds,
-        samples: p.samples as f64,
-        rel_mse: p.rel_mse,
-        trimmed_rel_mse: p.trimmed_rel_mse,
-    }
 }
 
 fn inset((i, r): (usize, Region)) -> Inset {

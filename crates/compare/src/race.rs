@@ -2,15 +2,15 @@
 
 use std::time::Duration;
 
-use caustica_film::LightImage;
+use caustica_film::{LightImage, Picture};
 use caustica_math::Rgb;
-use caustica_metrics::{Image, errors, flip, relative_error_map};
+use caustica_metrics::{Errors, Image, errors, flip, relative_error_map};
 use caustica_render::{Budget, Control, Progress, RenderError, RenderOptions, Report, Session};
+use caustica_report::CurvePoint;
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
 use caustica_transport::Settings;
 
-use crate::curve::Point;
 use crate::method::Method;
 use crate::outcome::{CompareError, Entrant, Outcome, Reference};
 
@@ -136,12 +136,12 @@ impl Race<'_> {
         let session =
             session(self.scene, &method.settings, self.options.threads).map_err(CompareError::from)?;
         let budget = self.options.budget;
-        let mut curve: Vec<Point> = Vec::new();
-        let mut last: Option<Report> = None;
+        let mut curve: Vec<CurvePoint> = Vec::new();
+        let mut last: Option<(Report, Seen)> = None;
         for mark in marks(budget) {
-            let (seconds, samples) = curve.last().map_or((0.0, 0), |p| (p.seconds, p.samples));
+            let (seconds, samples) = curve.last().map_or((0.0, 0.0), |p| (p.seconds, p.samples));
             let late = mark.time.is_some_and(|t| t.as_secs_f64() <= seconds);
-            if late || samples >= u64::from(mark.samples) {
+            if late || samples >= f64::from(mark.samples) {
                 continue;
             }
             let left = mark.time.map(|t| t.saturating_sub(Duration::from_secs_f64(seconds)));
@@ -150,54 +150,64 @@ impl Race<'_> {
                     tell_progress(tell, stage, &overall(p, (seconds, 0), budget));
                 })
                 .map_err(CompareError::from)?;
-            curve.push(self.point(&session, seconds + report.seconds, report.samples)?);
+            let seen = self.look(&session)?;
+            let Errors { rel_mse, trimmed_rel_mse, .. } = seen.errors;
+            let (seconds, samples) = (seconds + report.seconds, report.samples as f64);
+            curve.push(CurvePoint { seconds, samples, rel_mse, trimmed_rel_mse });
             let stopped = report.stopped;
-            last = Some(report);
+            last = Some((report, seen));
             if stopped {
                 break;
             }
         }
         tell(Event::Measuring(stage))?;
-        let report = last.ok_or(CompareError::Nothing)?;
-        Ok(self.measured(method, &session, (curve, report))?)
+        let last = last.ok_or(CompareError::Nothing)?;
+        Ok(self.measured(method, &session, (curve, last))?)
     }
 
-    fn point(&self, session: &Session<'_>, seconds: f64, samples: u64) -> Result<Point, CompareError> {
-        let pixels = session.film().develop().combined(LightImage::On);
-        let [width, height] = self.size;
-        let reference = Image::new(width, height, self.reference)?;
-        let e = errors(Image::new(width, height, &pixels)?, reference)?;
-        Ok(Point { seconds, samples, rel_mse: e.rel_mse, trimmed_rel_mse: e.trimmed_rel_mse })
+    /// The picture so far, and its errors.
+    fn look(&self, session: &Session<'_>) -> Result<Seen, CompareError> {
+        let picture = session.film().develop();
+        let pixels = picture.combined(LightImage::On);
+        let errors = errors(self.image(&pixels)?, self.image(self.reference)?)?;
+        Ok(Seen { picture, pixels, errors })
+    }
+
+    fn image<'p>(&self, pixels: &'p [Rgb]) -> Result<Image<'p>, CompareError> {
+        Ok(Image::new(self.size[0], self.size[1], pixels)?)
     }
 
     fn measured(
         &self,
         method: &Method,
         session: &Session<'_>,
-        (curve, report): (Vec<Point>, Report),
+        (curve, (report, seen)): (Vec<CurvePoint>, (Report, Seen)),
     ) -> Result<Entrant, CompareError> {
-        let picture = session.film().develop();
-        let pixels = picture.combined(LightImage::On);
-        let [width, height] = self.size;
-        let (image, reference) =
-            (Image::new(width, height, &pixels)?, Image::new(width, height, self.reference)?);
+        let (image, reference) = (self.image(&seen.pixels)?, self.image(self.reference)?);
         // All are finite by now, so that only a black reference has no exposure to look at it by.
         let flip = flip::hdr(image, reference, &flip::Options::default()).ok();
+        let relative_errors = relative_error_map(image, reference)?;
         let seconds = curve.last().map_or(0.0, |p| p.seconds);
-        let area = f64::from(width) * f64::from(height);
-        let samples_per_second = report.samples as f64 * area / seconds.max(1e-9);
+        let samples_per_second = report.samples as f64 * seen.pixels.len() as f64 / seconds.max(1e-9);
         let report = Report { seconds, samples_per_second, ..report };
         Ok(Entrant {
             method: method.clone(),
             metadata: session.metadata(&report),
-            errors: errors(image, reference)?,
-            relative_errors: relative_error_map(image, reference)?,
-            picture,
+            picture: seen.picture,
+            errors: seen.errors,
+            relative_errors,
             report,
             flip,
             curve,
         })
     }
+}
+
+/// A picture at one moment, as it is compared.
+struct Seen {
+    picture: Picture,
+    pixels: Vec<Rgb>,
+    errors: Errors,
 }
 
 /// The budgets up to each moment, the last one the whole.

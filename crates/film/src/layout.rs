@@ -68,6 +68,15 @@ impl FilmLayout {
     }
 }
 
+/// Whether a layer of that many pixels fills `window`.
+pub(crate) fn check_layer(pixels: usize, window: Window) -> Result<(), FilmError> {
+    let expected = window.pixels();
+    if pixels as u64 == expected {
+        return Ok(());
+    }
+    Err(FilmError::Layout(format!("a layer of {pixels} pixels for a window of {expected}")))
+}
+
 /// Whether `window` is a part of a picture of `width` × `height` pixels.
 pub(crate) fn check_window(width: u32, height: u32, window: Window) -> Result<(), FilmError> {
     let Window { x, y, width: w, height: h } = window;

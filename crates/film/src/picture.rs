@@ -7,7 +7,7 @@ use caustica_math::Rgb;
 use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
-use crate::layout::{Window, check_window};
+use crate::layout::{Window, check_layer, check_window};
 
 /// What part the light image plays in the combined picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -77,11 +77,8 @@ impl Picture {
     /// Whether the window fits the picture and the layers fit the window.
     pub(crate) fn check(&self) -> Result<(), FilmError> {
         check_window(self.width, self.height, self.window)?;
-        let pixels = self.window.pixels();
-        match [self.eye.len(), self.light.len()].into_iter().find(|n| *n as u64 != pixels) {
-            Some(n) => Err(FilmError::Layout(format!("a layer of {n} pixels for a window of {pixels}"))),
-            None => Ok(()),
-        }
+        check_layer(self.eye.len(), self.window)?;
+        check_layer(self.light.len(), self.window)
     }
 }
 

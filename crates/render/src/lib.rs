@@ -11,5 +11,5 @@ mod session;
 mod workers;
 
 pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};
-pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session};
+pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session, available_threads};
 pub use workers::Budget;

@@ -2,14 +2,14 @@
 
 use std::time::Instant;
 
-use caustica_film::{Film, FilmError, FilmLayout, Window, available_memory};
+use caustica_film::{Film, FilmError, Window, available_memory};
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
 use caustica_transport::strategy::Strategy;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink};
 
-use crate::session::{Control, Progress, RenderError, RenderOptions, available_threads, quantum_exponent};
+use crate::session::{Control, Progress, RenderError, RenderOptions, film_layout};
 use crate::workers::{Budget, Units, Workers, pixels};
 
 /// The most edges of paths whose strategies can be kept apart: 152 strategies.
@@ -54,13 +54,7 @@ impl<'a> Pyramid<'a> {
     pub fn new(scene: &'a Scene, options: RenderOptions, edges: u32) -> Result<Self, RenderError> {
         let edges = edges.clamp(1, MOST_EDGES);
         let settings = Settings { integrator: Integrator::Bdpt, ..options.settings.clone() };
-        let w = scene.film.window();
-        let layout = FilmLayout {
-            width: scene.film.width,
-            height: scene.film.height,
-            window: Window { x: w.x, y: w.y, width: w.width, height: w.height },
-            quantum_exponent: quantum_exponent(scene, &settings.integrator),
-        };
+        let layout = film_layout(scene, &settings.integrator);
         let strategies = u64::from(edges * (edges + 3) / 2);
         let needed = layout.window.pixels().saturating_mul(2 * BYTES * (strategies + 1));
         if available_memory().is_some_and(|available| needed > available) {
@@ -103,8 +97,7 @@ impl<'a> Pyramid<'a> {
     /// # Errors
     /// If no worker thread can be started.
     pub fn run(&self, control: &Control, progress: impl FnMut(&Progress)) -> Result<f64, RenderError> {
-        let RenderOptions { samples, time, .. } = self.options;
-        self.run_for(Budget { samples, time }, control, progress)
+        self.run_for(self.options.budget(), control, progress)
     }
 
     /// Renders as [`Session::run_for`](crate::Session::run_for) does. Returns seconds.
@@ -118,7 +111,7 @@ impl<'a> Pyramid<'a> {
         progress: impl FnMut(&Progress),
     ) -> Result<f64, RenderError> {
         let start = Instant::now();
-        let threads = self.options.threads.unwrap_or_else(available_threads).max(1);
+        let threads = self.options.thread_count();
         let (window, first) = (self.whole.layout().window, self.whole.eye_samples());
         let added =
             Workers { window, first, budget, threads, control }.run(|units| self.work(units), progress)?;

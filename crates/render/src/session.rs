@@ -24,6 +24,18 @@ pub struct RenderOptions {
     pub threads: Option<usize>,
 }
 
+impl RenderOptions {
+    /// For how long to render.
+    pub fn budget(&self) -> Budget {
+        Budget { samples: self.samples, time: self.time }
+    }
+
+    /// Worker threads, as asked for or as the machine has.
+    pub fn thread_count(&self) -> usize {
+        self.threads.unwrap_or_else(available_threads).max(1)
+    }
+}
+
 impl Default for RenderOptions {
     fn default() -> Self {
         Self { settings: Settings::default(), samples: 64, time: None, threads: None }
@@ -114,13 +126,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// If the film does not fit into memory.
     pub fn new(scene: &'a Scene, options: RenderOptions) -> Result<Self, RenderError> {
-        let window = scene.film.window();
-        let film = Film::new(FilmLayout {
-            width: scene.film.width,
-            height: scene.film.height,
-            window: Window { x: window.x, y: window.y, width: window.width, height: window.height },
-            quantum_exponent: quantum_exponent(scene, &options.settings.integrator),
-        })?;
+        let film = Film::new(film_layout(scene, &options.settings.integrator))?;
         Ok(Self { kernel: Kernel::new(scene, options.settings.clone()), film, options })
     }
 
@@ -155,8 +161,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// If no worker thread can be started.
     pub fn run(&self, control: &Control, progress: impl FnMut(&Progress)) -> Result<Report, RenderError> {
-        let RenderOptions { samples, time, .. } = self.options;
-        self.run_for(Budget { samples, time }, control, progress)
+        self.run_for(self.options.budget(), control, progress)
     }
 
     /// Renders until the samples or the time are used up, or `control` says stop; only whole passes of one
@@ -174,7 +179,7 @@ impl<'a> Session<'a> {
     ) -> Result<Report, RenderError> {
         let start = Instant::now();
         let window = self.film.layout().window;
-        let threads = self.options.threads.unwrap_or_else(available_threads).max(1);
+        let threads = self.options.thread_count();
         let per_thread = LightBuffer::memory(window.pixels());
         let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;
         let workers = Workers { window, first: self.samples(), budget, threads, control };
@@ -264,13 +269,24 @@ fn heuristic_name(heuristic: Heuristic) -> &'static str {
 }
 
 /// How many threads the machine offers.
-pub(crate) fn available_threads() -> usize {
+pub fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// The film that a scene asks for, with a quantum that suits the integrator.
+pub(crate) fn film_layout(scene: &Scene, integrator: &Integrator) -> FilmLayout {
+    let w = scene.film.window();
+    FilmLayout {
+        width: scene.film.width,
+        height: scene.film.height,
+        window: Window { x: w.x, y: w.y, width: w.width, height: w.height },
+        quantum_exponent: quantum_exponent(scene, integrator),
+    }
 }
 
 /// The film's quantum: a power of two far below what the scene's lamps would give if their light were spread
 /// over its bounds, but large enough that the brightest lamp, seen directly, does not overflow in 2²⁷ samples.
-pub(crate) fn quantum_exponent(scene: &Scene, integrator: &Integrator) -> i32 {
+fn quantum_exponent(scene: &Scene, integrator: &Integrator) -> i32 {
     let lit = matches!(
         integrator,
         Integrator::Bdpt

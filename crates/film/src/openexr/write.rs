@@ -13,7 +13,7 @@ use exr::prelude::{
 };
 
 use super::{LIGHT_IMAGE, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
-use crate::layout::{Window, check_window};
+use crate::layout::{Window, check_layer, check_window};
 use crate::picture::{LightImage, Picture};
 use crate::{FilmError, output};
 
@@ -60,10 +60,7 @@ pub fn write_layers(
         if name.is_empty() || !name.bytes().all(|b| b.is_ascii_graphic()) || name.len() > LONGEST_LAYER {
             return Err(FilmError::Layout(format!("`{name}` cannot be the name of a layer")));
         }
-        if pixels.len() as u64 != window.pixels() {
-            let (n, expected) = (pixels.len(), window.pixels());
-            return Err(FilmError::Layout(format!("a layer of {n} pixels for a window of {expected}")));
-        }
+        check_layer(pixels.len(), window)?;
     }
     write(path, size, window, (layers, metadata))
 }
