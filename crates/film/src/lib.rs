@@ -27,5 +27,5 @@ pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr, write_layers};
 pub use output::{check_writable, write_atomically, write_file};
 pub use picture::{LightImage, Picture};
-pub use record::{FilmRecord, Provenance, SampleRanges};
+pub use record::{FilmFacts, FilmRecord, Provenance, SampleRanges, write_film};
 pub use tonemap::{ToneMap, to_display};

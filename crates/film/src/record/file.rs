@@ -6,7 +6,7 @@
 //! all first, row by row, then the next ones. All numbers are little-endian.
 
 use std::fs::File;
-use std::io::{BufWriter, Read, Write};
+use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
 use flate2::Compression;
@@ -15,7 +15,7 @@ use flate2::write::DeflateEncoder;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{FilmRecord, Provenance, SampleRanges};
+use super::{FilmFacts, FilmRecord};
 use crate::dual::{DualFilm, passes_by_half};
 use crate::film::{Film, FilmCounts};
 use crate::layout::FilmLayout;
@@ -42,10 +42,48 @@ struct Header {
     #[serde(flatten)]
     layout: FilmLayout,
     counts: [FilmCounts; 2],
-    samples: SampleRanges,
-    seconds: f64,
     #[serde(flatten)]
-    provenance: Provenance,
+    facts: FilmFacts,
+}
+
+/// Writes a film, under a temporary name first: a file of that name is replaced whole or not at all. The same film and
+/// facts give the same bytes.
+///
+/// # Errors
+/// What the system says.
+pub fn write_film(path: &Path, film: &DualFilm, facts: &FilmFacts) -> Result<(), FilmError> {
+    let planes = planes(film);
+    output::write_atomically(path, |file| {
+        let mut hashed = Hashed { file: BufWriter::new(file), hasher: blake3::Hasher::new() };
+        put((film, facts), &planes, &mut hashed).map_err(|e| FilmError::io(path, e))
+    })
+}
+
+fn put((film, facts): (&DualFilm, &FilmFacts), planes: &[Vec<u8>], to: &mut Hashed<'_>) -> io::Result<()> {
+    let counts = film.halves().each_ref().map(Film::counts);
+    let header = Header { layout: *film.layout(), counts, facts: facts.clone() };
+    to.put(MAGIC)?;
+    to.put(VERSION)?;
+    to.put(serde_json::to_string(&header)?.as_bytes())?;
+    to.put(b"\n")?;
+    for plane in planes {
+        to.put(&(plane.len() as u64).to_le_bytes())?;
+        to.put(plane)?;
+    }
+    let hash = to.hasher.finalize();
+    to.file.write_all(hash.as_bytes())?;
+    to.file.flush()
+}
+
+/// The channels of both halves, packed.
+fn planes(film: &DualFilm) -> Vec<Vec<u8>> {
+    (0..2 * CHANNELS)
+        .into_par_iter()
+        .map(|i| {
+            let half = &film.halves()[i / CHANNELS];
+            pack(&half.sums().map(|sums| sums[i % CHANNELS]).collect::<Vec<_>>())
+        })
+        .collect()
 }
 
 impl FilmRecord {
@@ -54,49 +92,12 @@ impl FilmRecord {
         start.starts_with(MAGIC)
     }
 
-    /// Writes the film, under a temporary name first: a file of that name is replaced whole or not at all. The same
-    /// film gives the same bytes.
+    /// Writes the film as [`write_film`] does.
     ///
     /// # Errors
     /// What the system says.
     pub fn write(&self, path: &Path) -> Result<(), FilmError> {
-        let planes = self.planes();
-        output::write_atomically(path, |file| {
-            let mut hashed = Hashed { file: BufWriter::new(file), hasher: blake3::Hasher::new() };
-            self.put(&planes, &mut hashed).map_err(|e| FilmError::io(path, e))
-        })
-    }
-
-    fn put(&self, planes: &[Vec<u8>], to: &mut Hashed<'_>) -> std::io::Result<()> {
-        let header = Header {
-            layout: *self.film.layout(),
-            counts: self.film.halves().each_ref().map(Film::counts),
-            samples: self.samples.clone(),
-            seconds: self.seconds,
-            provenance: self.provenance.clone(),
-        };
-        to.put(MAGIC)?;
-        to.put(VERSION)?;
-        to.put(serde_json::to_string(&header)?.as_bytes())?;
-        to.put(b"\n")?;
-        for plane in planes {
-            to.put(&(plane.len() as u64).to_le_bytes())?;
-            to.put(plane)?;
-        }
-        let hash = to.hasher.finalize();
-        to.file.write_all(hash.as_bytes())?;
-        to.file.flush()
-    }
-
-    /// The channels of both halves, packed.
-    fn planes(&self) -> Vec<Vec<u8>> {
-        (0..2 * CHANNELS)
-            .into_par_iter()
-            .map(|i| {
-                let half = &self.film.halves()[i / CHANNELS];
-                pack(&half.sums().map(|sums| sums[i % CHANNELS]).collect::<Vec<_>>())
-            })
-            .collect()
+        write_film(path, &self.film, &self.facts)
     }
 
     /// Reads a film file.
@@ -141,15 +142,14 @@ impl FilmRecord {
         // Before any memory is taken for the sums.
         let _ = DualFilm::new(header.layout)?;
         let film = unpack_film(&header, &rest[end + 1..]).ok_or_else(damaged)?;
-        let Header { samples, seconds, provenance, .. } = header;
-        Ok(Self { film, provenance, samples, seconds })
+        Ok(Self { film, facts: header.facts })
     }
 }
 
 impl Header {
     /// Whether the counts are those of the samples that are said to be there.
     fn check_counts(&self) -> Result<(), FilmError> {
-        let ranges = self.samples.as_slice();
+        let ranges = self.facts.samples.as_slice();
         let expected = ranges.iter().map(|r| passes_by_half(r.clone()));
         let expected = expected.fold([0, 0], |sum, n| [sum[0] + n[0], sum[1] + n[1]]);
         let right = |of: fn(&FilmCounts) -> u64| {
@@ -157,7 +157,7 @@ impl Header {
             counts == [0, 0] || counts == expected
         };
         let in_reach = ranges.last().is_none_or(|r| r.end <= MOST_SAMPLES);
-        if in_reach && right(|c| c.eye_samples) && right(|c| c.light_samples) && self.seconds >= 0.0 {
+        if in_reach && right(|c| c.eye_samples) && right(|c| c.light_samples) && self.facts.seconds >= 0.0 {
             return Ok(());
         }
         Err(FilmError::Layout("the film file's numbers of samples do not fit together".to_owned()))
@@ -171,7 +171,7 @@ struct Hashed<'a> {
 }
 
 impl Hashed<'_> {
-    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.hasher.update(bytes);
         self.file.write_all(bytes)
     }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use file::write_film;
 pub use ranges::SampleRanges;
 
 use crate::FilmError;
@@ -41,18 +42,24 @@ impl Provenance {
     }
 }
 
-/// A film, what it is a film of, and which samples are in it: all that is needed to merge it with others and to
-/// continue it.
+/// What is known of a film.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FilmFacts {
+    /// What it is a film of.
+    pub provenance: Provenance,
+    /// The samples that it holds.
+    pub samples: SampleRanges,
+    /// Seconds of rendering.
+    pub seconds: f64,
+}
+
+/// A film and what is known of it: all that is needed to merge it with others and to continue it.
 #[derive(Debug)]
 pub struct FilmRecord {
     /// The sums.
     pub film: DualFilm,
     /// What they are sums of.
-    pub provenance: Provenance,
-    /// The samples that they hold.
-    pub samples: SampleRanges,
-    /// Seconds of rendering.
-    pub seconds: f64,
+    pub facts: FilmFacts,
 }
 
 impl FilmRecord {
@@ -61,10 +68,11 @@ impl FilmRecord {
     /// # Errors
     /// If it is a film of another scene, another size or other settings, or if both hold the same samples.
     pub fn check_mergeable(&self, other: &Self) -> Result<(), FilmError> {
-        if let Some(what) = self.provenance.difference(&other.provenance) {
+        let (ours, theirs) = (&self.facts, &other.facts);
+        if let Some(what) = ours.provenance.difference(&theirs.provenance) {
             return Err(FilmError::Merge(format!("they differ in {what}")));
         }
-        if let Some(twice) = self.samples.overlap(&other.samples) {
+        if let Some(twice) = ours.samples.overlap(&theirs.samples) {
             return Err(FilmError::Merge(format!("both hold the samples {}..{}", twice.start, twice.end)));
         }
         self.film.halves()[0].check_same_layout(&other.film.halves()[0])
@@ -77,10 +85,10 @@ impl FilmRecord {
     /// Those of [`FilmRecord::check_mergeable`]; then this one stays as it is.
     pub fn merge(&mut self, other: &Self) -> Result<(), FilmError> {
         self.check_mergeable(other)?;
-        let samples = self.samples.union(&other.samples)?;
+        let samples = self.facts.samples.union(&other.facts.samples)?;
         self.film.merge(&other.film)?;
-        self.samples = samples;
-        self.seconds += other.seconds;
+        self.facts.samples = samples;
+        self.facts.seconds += other.facts.seconds;
         Ok(())
     }
 }

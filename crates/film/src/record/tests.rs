@@ -32,7 +32,8 @@ fn record(samples: std::ops::Range<u64>) -> FilmRecord {
         }
     }
     film.finish_passes(samples.clone(), true, true);
-    FilmRecord { film, provenance: provenance(), samples: samples.into(), seconds: 1.5 }
+    let facts = FilmFacts { provenance: provenance(), samples: samples.into(), seconds: 1.5 };
+    FilmRecord { film, facts }
 }
 
 #[test]
@@ -48,7 +49,7 @@ fn merged_films_have_the_bits_of_one_in_any_order_and_grouping() {
     for order in [[0..2, 2..5, 5..9], [5..9, 0..2, 2..5], [2..5, 5..9, 0..2]] {
         let all = merged(order);
         assert!(all.film.bits_equal(&whole.film));
-        assert_eq!((all.samples.to_string().as_str(), all.seconds), ("0..9", 4.5));
+        assert_eq!((all.facts.samples.to_string().as_str(), all.facts.seconds), ("0..9", 4.5));
     }
 }
 
@@ -61,19 +62,19 @@ fn films_of_something_else_are_refused_and_leave_the_first_as_it_is() {
         change(&mut other);
         other
     };
-    let set = |r: &mut FilmRecord, n: &str, v: &str| r.provenance.settings.insert(n.into(), v.into());
+    let set = |r: &mut FilmRecord, n: &str, v: &str| r.facts.provenance.settings.insert(n.into(), v.into());
     let cases: [(&dyn Fn(&mut FilmRecord), &str); 5] = [
-        (&|r| r.provenance.scene_hash.clear(), "they differ in what `küche.xml` holds"),
+        (&|r| r.facts.provenance.scene_hash.clear(), "they differ in what `küche.xml` holds"),
         (
             &|r| {
-                r.provenance.scene_hash.clear();
-                r.provenance.scene = "bad.xml".into();
+                r.facts.provenance.scene_hash.clear();
+                r.facts.provenance.scene = "bad.xml".into();
             },
             "they differ in the scene (`küche.xml` and `bad.xml`)",
         ),
         (&|r| _ = set(r, "seed", "8"), "they differ in the seed (7 and 8)"),
         (&|r| _ = set(r, "maxDepth", "3"), "they differ in the maxDepth (not set and 3)"),
-        (&|r| r.samples = (1..5).into(), "both hold the samples 1..2"),
+        (&|r| r.facts.samples = (1..5).into(), "both hold the samples 1..2"),
     ];
     for (change, expected) in cases {
         let error = first.merge(&changed(change)).unwrap_err().to_string();
@@ -82,9 +83,9 @@ fn films_of_something_else_are_refused_and_leave_the_first_as_it_is() {
     let other_size = FilmLayout { quantum_exponent: -29, ..layout() };
     let other = FilmRecord { film: DualFilm::new(other_size).unwrap(), ..record(2..4) };
     assert!(first.merge(&other).unwrap_err().to_string().contains("different layouts"));
-    assert_eq!((first.film.fingerprint(), first.samples.total()), (before, 2));
+    assert_eq!((first.film.fingerprint(), first.facts.samples.total()), (before, 2));
     // The name alone is no difference.
-    first.merge(&changed(&|r| r.provenance.scene = "kopie.xml".into())).unwrap();
+    first.merge(&changed(&|r| r.facts.provenance.scene = "kopie.xml".into())).unwrap();
 }
 
 #[test]
@@ -96,8 +97,7 @@ fn files_round_trip_to_the_bit() {
         written.write(&path).unwrap();
         let read = FilmRecord::read(&path).unwrap();
         assert!(read.film.bits_equal(&written.film));
-        assert_eq!((&read.provenance, &read.samples), (&written.provenance, &written.samples));
-        assert_eq!(read.seconds, 1.5);
+        assert_eq!(read.facts, written.facts);
         let bytes = fs::read(&path).unwrap();
         assert!(FilmRecord::is_film(&bytes));
         read.write(&path).unwrap();
