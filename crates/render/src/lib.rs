@@ -13,7 +13,7 @@ mod stages;
 mod workers;
 
 pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};
-pub use provenance::provenance;
+pub use provenance::{content_hash, provenance};
 pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session, available_threads};
 pub use stages::Stages;
 pub use workers::Budget;

@@ -7,36 +7,42 @@ use caustica_scene::Description;
 use caustica_scene::description::Integrator;
 use caustica_transport::Settings;
 
+use crate::names::integrator_name;
 use crate::session::{heuristic_name, sampler_name};
 
-/// What a film of that scene by those settings is a film of: films of the same can be merged. The scene's places in
-/// its files, its names and what the settings override do not count.
-///
-/// The description is taken apart while it is hashed, and is whole again afterwards.
-pub fn provenance(description: &mut Description, name: &str, settings: &Settings) -> Provenance {
-    let text = |value: Option<u32>| value.map_or_else(|| "unlimited".to_owned(), |v| v.to_string());
-    let settings: [(&str, String); 8] = [
-        ("integrator", format!("{:?}", settings.integrator)),
+/// All that a sample depends on beside the scene and its own number, by name.
+pub(crate) fn facts(settings: &Settings) -> BTreeMap<String, String> {
+    let integrator = settings.integrator;
+    let mut facts = vec![
+        ("integrator", integrator_name(&integrator).to_owned()),
         ("seed", settings.seed.to_string()),
         ("sampler", sampler_name(settings.sampler).to_owned()),
         ("strategies", settings.strategies.to_string()),
         ("heuristic", heuristic_name(settings.heuristic).to_owned()),
-        ("roulette depth", settings.roulette_start().to_string()),
-        ("max depth", text(settings.max_depth)),
+        ("rouletteDepth", settings.roulette_start().to_string()),
+        ("maxDepth", settings.max_depth.map_or_else(|| "unlimited".to_owned(), |d| d.to_string())),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
     ];
-    Provenance {
-        scene: name.to_owned(),
-        scene_hash: content_hash(description),
-        settings: settings
-            .into_iter()
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect::<BTreeMap<_, _>>(),
+    if matches!(
+        integrator,
+        Integrator::Av { .. } | Integrator::Simple { .. } | Integrator::Directional { .. }
+    ) {
+        facts.push(("parameters", format!("{integrator:?}")));
     }
+    facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-/// The BLAKE3 hash of the description in CBOR, as hexadecimal digits.
-fn content_hash(description: &mut Description) -> String {
+/// What a film of a scene by those settings is a film of: films of the same can be merged. The scene has a name, for
+/// people, and the hash of what it holds by [`content_hash`].
+pub fn provenance(name: &str, content_hash: &str, settings: &Settings) -> Provenance {
+    Provenance { scene: name.to_owned(), scene_hash: content_hash.to_owned(), settings: facts(settings) }
+}
+
+/// The BLAKE3 hash of all that a scene holds, as hexadecimal digits. Names, the items' places in their files, and the
+/// integrator and number of samples that the scene asks for do not count.
+///
+/// The description is taken apart while it is hashed, and is whole again afterwards.
+pub fn content_hash(description: &mut Description) -> String {
     let (integrator, samples) = (description.integrator, description.samples);
     (description.integrator, description.samples) = (Integrator::default(), 0);
     let camera = description.camera.origin.take();
@@ -69,7 +75,7 @@ mod tests {
     #[test]
     fn places_and_names_do_not_count_and_all_else_does() {
         let mut scene = scenes::open_box();
-        let of = |d: &mut Description| provenance(d, "a", &Settings::default()).scene_hash;
+        let of = content_hash;
         let hash = of(&mut scene);
         let before = scene.clone();
         let origin = Some(Origin { file: "a.xml".into(), line: 3, column: 1, span: None });
@@ -93,14 +99,13 @@ mod tests {
 
     #[test]
     fn settings_that_change_the_film_are_told_apart() {
-        let mut scene = scenes::open_box();
-        let mut of = |settings: &Settings| provenance(&mut scene, "a", settings);
+        let of = |settings: &Settings| provenance("a", "0", settings);
         let usual = Settings::default();
         let first = of(&usual);
         assert_eq!(of(&usual).difference(&first), None);
         let seed = Settings { seed: 1, ..usual.clone() };
         assert_eq!(first.difference(&of(&seed)).as_deref(), Some("the seed (0 and 1)"));
         let depth = Settings { max_depth: Some(3), ..usual };
-        assert_eq!(first.difference(&of(&depth)).as_deref(), Some("the max depth (unlimited and 3)"));
+        assert_eq!(first.difference(&of(&depth)).as_deref(), Some("the maxDepth (unlimited and 3)"));
     }
 }

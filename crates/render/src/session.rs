@@ -13,6 +13,7 @@ use caustica_transport::{Heuristic, Kernel, Scratch, Settings, Sink};
 use serde::Serialize;
 
 use crate::names::integrator_name;
+use crate::provenance::facts;
 use crate::workers::{Budget, Units, Workers, pixels};
 
 /// What a session renders, and for how long.
@@ -194,17 +195,11 @@ impl<'a> Session<'a> {
 
     /// What to write beside the picture: how it was made.
     pub fn metadata(&self, report: &Report) -> Metadata {
-        let settings = &self.options.settings;
-        let mut m = Metadata::new();
-        m.set("integrator", report.integrator);
-        m.set("seed", report.seed);
-        m.set("sampler", sampler_name(settings.sampler));
+        let mut m: Metadata = facts(&self.options.settings).into_iter().collect();
         m.set("seconds", format!("{:.3}", report.seconds));
-        m.set("version", env!("CARGO_PKG_VERSION"));
-        m.set("strategies", &settings.strategies);
-        m.set("heuristic", heuristic_name(settings.heuristic));
-        m.set("rouletteDepth", settings.roulette_start());
-        m.set("maxDepth", settings.max_depth.map_or("unlimited".to_owned(), |d| d.to_string()));
+        if let Some(noise) = report.noise {
+            m.set("noise", format!("{noise:.5}"));
+        }
         m
     }
 

@@ -176,5 +176,5 @@ fn films_that_cannot_be_had_are_errors() {
     (d.film.width, d.film.height) = (65_536, 65_536);
     let (scene, _) = Scene::new(d).unwrap();
     let error = Session::new(&scene, RenderOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("206159 MB"), "{error}");
+    assert!(error.contains("412317 MB"), "{error}");
 }

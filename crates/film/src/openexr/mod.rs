@@ -57,5 +57,11 @@ impl Metadata {
     }
 }
 
+impl FromIterator<(String, String)> for Metadata {
+    fn from_iter<I: IntoIterator<Item = (String, String)>>(facts: I) -> Self {
+        Self(facts.into_iter().collect())
+    }
+}
+
 #[cfg(test)]
 mod tests;
