@@ -20,26 +20,29 @@ pub struct DualFilm {
     halves: [Film; 2],
 }
 
-/// The half that a pass belongs to: of the passes from 2^k up to 2^(k+1), the first half goes to the first and the
-/// second to the second. Long runs of consecutive passes stay together, because they are well spread among each
-/// other: parts of every other pass would be noisier than half of the film.
+/// Runs of passes that go to one half are never longer than 2 to this power.
+const LONGEST_RUN: u32 = 12;
+
+/// The half that a pass belongs to. Of the passes from 2^k up to 2^(k+1), the four quarters go to the first, the second,
+/// the first and the second half; from 2¹⁴ on runs of 4096 take turns. Long runs of consecutive passes stay together,
+/// because they are well spread among each other: every other pass would be noisier than half of the film is.
 #[inline]
 pub fn half_of(pass: u64) -> usize {
-    match pass {
-        0 | 1 => pass as usize,
-        _ => (pass >> (pass.ilog2() - 1) & 1) as usize,
-    }
+    (pass >> run_of(pass) & 1) as usize
+}
+
+/// log₂ of the length of the run that a pass is in.
+#[inline]
+fn run_of(pass: u64) -> u32 {
+    (pass | 1).ilog2().saturating_sub(2).min(LONGEST_RUN)
 }
 
 /// How many of the passes before `end` belong to the second half.
 fn second_before(end: u64) -> u64 {
-    match end {
-        0 | 1 => 0,
-        _ => {
-            let quarter = 1 << end.ilog2() >> 1;
-            quarter + end.saturating_sub(3 * quarter)
-        }
-    }
+    // All runs of before are whole and even in number.
+    let run = 1 << run_of(end);
+    let (pairs, rest) = (end / (2 * run), end % (2 * run));
+    pairs * run + rest.saturating_sub(run)
 }
 
 /// How many of those passes belong to each half.
@@ -60,13 +63,8 @@ impl DualFilm {
         Ok(Self { halves: [Film::new(layout)?, Film::new(layout)?] })
     }
 
-    /// A film of two halves, which must have one layout.
-    ///
-    /// # Errors
-    /// If they do not.
-    pub fn of_halves(halves: [Film; 2]) -> Result<Self, FilmError> {
-        halves[0].check_same_layout(&halves[1])?;
-        Ok(Self { halves })
+    pub(crate) fn halves_mut(&mut self) -> &mut [Film; 2] {
+        &mut self.halves
     }
 
     /// The film's sizes.
@@ -163,19 +161,16 @@ mod tests {
     #[test]
     fn halves_are_balanced_at_every_power_of_two_and_counted_right() {
         let mut second = 0;
-        for pass in 0..5000u64 {
+        for pass in 0..40_000u64 {
             assert_eq!(second_before(pass), second, "{pass}");
             if pass.is_power_of_two() && pass > 1 {
                 assert_eq!(2 * second, pass);
             }
-            // Never less than a third of them.
-            if pass > 1 {
-                assert!(3 * second + 1 >= pass && 3 * (pass - second) + 1 >= pass, "{pass}: {second}");
-            }
+            // Never less than two fifths of them, and a run.
+            assert!(5 * second + 5 >= 2 * pass && 5 * (pass - second) + 5 >= 2 * pass, "{pass}: {second}");
             second += half_of(pass) as u64;
         }
-        assert_eq!(half_of(u64::MAX), 1);
-        assert_eq!(second_before(u64::MAX), u64::MAX / 2);
+        assert_eq!((half_of(u64::MAX), second_before(u64::MAX)), (1, u64::MAX / 2));
     }
 
     fn film() -> DualFilm {

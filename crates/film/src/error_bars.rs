@@ -1,6 +1,9 @@
 //! How far a picture may be from the truth, told by the difference of its halves.
 
+use std::ops::Range;
+
 use caustica_math::Rgb;
+use caustica_math::stats::{chi_square_quantile, t_quantile};
 
 use crate::layout::Window;
 
@@ -10,25 +13,32 @@ const POOL: usize = 2;
 /// Pixels on each side of one whose brightness is taken together with its own.
 const SMOOTH: usize = 1;
 
-/// The quantile of Student's t of 25 degrees of freedom beyond which 2.5 % lie.
-const QUANTILE_25: f64 = 2.06;
+/// The same for errors of the whole picture. Where light is so rare that most pixels have none, a pixel's own brightness
+/// says nothing about the truth, and an error relative to it even less.
+const AROUND: usize = 7;
 
-/// The same of the normal distribution, for errors of the whole picture.
-const QUANTILE: f64 = 1.96;
-
-/// Relative to the picture's mean, how bright a pixel counts at least where errors are relative.
+/// Relative to the picture's mean, how bright a pixel counts at least in the error of the whole picture.
 const DIM: f64 = 0.1;
 
-/// The part of the pixels that is left out of the error of the whole picture, the worst ones.
-const TRIMMED: f64 = 1e-3;
+/// The same for the error bars of single pixels.
+const BLACK: f64 = 0.01;
+
+/// What the errors of 19 in 20 normal numbers lie within, in standard deviations.
+const NORMAL: f64 = 1.96;
+
+/// Beyond these many degrees of freedom, χ² divided by them is one within a thousandth.
+const MANY: f64 = 1e7;
 
 /// Error bars of a picture that is the mean of two parts.
 ///
 /// If A and B are the means of n_A and n_B of its N passes, the square of A − B tells the variance of the mean:
-/// v = (A − B)² n_A n_B / N². That counts all noise alike, of eye and light image. (What the halves are too sure of,
-/// as each of them is spread well over the pixel, the film that is made of both is even more: the estimate errs
-/// a little to the safe side.) For a single pixel it has one degree of freedom, too few to say anything. So the
-/// variances of the pixels around it are taken together with its own, each relative to the brightness there.
+/// v = (A − B)² n_A n_B / N². That counts all noise alike, of eye and light image. (The halves are well spread over a
+/// pixel each, and the film that is made of both is spread better still: the estimate errs to the safe side.) For a
+/// single pixel it has one degree of freedom, too few to say anything. So the variances of the pixels around it are
+/// taken together with its own, each relative to the brightness there.
+///
+/// What no sample has found yet, nothing can tell of: a caustic that one path in a million finds is not missed by
+/// error bars of a hundred thousand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorBars {
     window: Window,
@@ -71,65 +81,76 @@ impl ErrorBars {
         (0..self.mean.len()).map(|i| Rgb(channels.each_ref().map(|w| w[i]))).collect()
     }
 
+    fn size(&self) -> [usize; 2] {
+        [self.window.width as usize, self.window.height as usize]
+    }
+
     fn channel(&self, c: usize) -> Vec<f32> {
-        let size = [self.window.width as usize, self.window.height as usize];
+        let size = self.size();
         let brightness: Vec<f64> = self.mean.iter().map(|p| f64::from(p.0[c]).abs()).collect();
-        let floor = DIM * DIM * mean(&brightness);
+        let floor = BLACK * mean(&brightness);
         let brightness: Vec<f64> =
             pooled(&brightness, size, SMOOTH).into_iter().map(|x| x.max(floor)).collect();
         let relative = |(v, s): (&Rgb, &f64)| if *s > 0.0 { f64::from(v.0[c]) / (s * s) } else { 0.0 };
         let relative: Vec<f64> = self.variance.iter().zip(&brightness).map(relative).collect();
-        let width = |(v, s): (f64, &f64)| (QUANTILE_25 * v.sqrt() * s) as f32;
-        pooled(&relative, size, POOL).into_iter().zip(&brightness).map(width).collect()
+        // Of pools that the border cuts off, too.
+        let quantiles: Vec<f64> =
+            (1..=(2 * POOL + 1) * (2 * POOL + 1)).map(|cells| t_quantile(0.025, cells as f64)).collect();
+        let quantile = |i: usize| {
+            let cells = |at: usize, count: usize| around(at, POOL, count).len();
+            quantiles[cells(i % size[0], size[0]) * cells(i / size[0], size[1]) - 1]
+        };
+        let width = |(i, (v, s)): (usize, (f64, &f64))| (quantile(i) * v.sqrt() * s) as f32;
+        pooled(&relative, size, POOL).into_iter().zip(&brightness).enumerate().map(width).collect()
     }
 
-    /// The error of the whole picture that is not exceeded with 95 % certainty in a typical pixel: 1.96 times the
-    /// root mean square of the relative errors of luminance. A pixel counts as a tenth as bright as the mean at
-    /// least, and the worst thousandth of the pixels is left out. A black picture has none.
-    pub fn relative(&self) -> f64 {
-        relative_error(&self.luminances(), &self.of_luminance)
+    /// The error of the whole picture: 1.96 times the root mean square of the errors of luminance, each relative to the
+    /// mean brightness of the 15 × 15 pixels around, which counts as a tenth of the picture's mean at least. It is an
+    /// upper bound of 95 % certainty, which matters for small pictures only. `None` of a black picture, about which
+    /// nothing is known.
+    pub fn relative(&self) -> Option<f64> {
+        let degrees = self.of_luminance.len() as f64;
+        let surplus =
+            if degrees < MANY { (degrees / chi_square_quantile(0.05, degrees)).sqrt() } else { 1.0 };
+        self.relative_error(&self.luminances(), &self.of_luminance).map(|e| e * surplus)
     }
 
-    /// The same of the errors themselves, where the truth is known, row by row: what [`ErrorBars::relative`]
-    /// estimates.
-    pub fn relative_to(&self, truth: &[Rgb]) -> f64 {
-        let squared: Vec<f64> = self
-            .luminances()
-            .iter()
-            .zip(truth)
-            .map(|(l, t)| (l - f64::from(t.luminance())) * (l - f64::from(t.luminance())))
-            .collect();
+    /// The same of the errors themselves, where the truth is known, row by row: what [`ErrorBars::relative`] bounds.
+    pub fn relative_to(&self, truth: &[Rgb]) -> Option<f64> {
         let truth: Vec<f64> = truth.iter().map(|t| t.luminance().into()).collect();
-        relative_error(&truth, &squared)
+        let squared: Vec<f64> =
+            self.luminances().iter().zip(&truth).map(|(l, t)| (l - t) * (l - t)).collect();
+        self.relative_error(&truth, &squared)
     }
 
     fn luminances(&self) -> Vec<f64> {
         self.mean.iter().map(|p| p.luminance().into()).collect()
     }
-}
 
-/// 1.96 √(mean of variance / luminance²), the worst thousandth left out.
-fn relative_error(luminance: &[f64], variance: &[f64]) -> f64 {
-    let dim = DIM * mean(luminance);
-    if dim <= 0.0 {
-        return 0.0;
+    /// 1.96 √(mean of variance / brightness²).
+    fn relative_error(&self, luminance: &[f64], variance: &[f64]) -> Option<f64> {
+        let dim = DIM * mean(luminance);
+        let brightness = pooled(luminance, self.size(), AROUND);
+        let relative =
+            brightness.iter().zip(variance).map(|(l, v)| v / (l.max(dim) * l.max(dim))).collect::<Vec<_>>();
+        (dim > 0.0).then(|| NORMAL * mean(&relative).sqrt())
     }
-    let mut relative: Vec<f64> =
-        luminance.iter().zip(variance).map(|(l, v)| v / (l.max(dim) * l.max(dim))).collect();
-    relative.sort_by(f64::total_cmp);
-    relative.truncate(relative.len() - (relative.len() as f64 * TRIMMED) as usize);
-    QUANTILE * mean(&relative).sqrt()
 }
 
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
+/// Those of `count` places that are at most `radius` from one.
+fn around(at: usize, radius: usize, count: usize) -> Range<usize> {
+    at.saturating_sub(radius)..(at + radius + 1).min(count)
+}
+
 /// The means over squares of 2 `radius` + 1 values around each, cut off at the borders.
 fn pooled(values: &[f64], [width, height]: [usize; 2], radius: usize) -> Vec<f64> {
     let along = |values: &[f64], count: usize, stride: usize, start: usize, to: &mut [f64]| {
         for i in 0..count {
-            let range = i.saturating_sub(radius)..(i + radius + 1).min(count);
+            let range = around(i, radius, count);
             let cells = range.len() as f64;
             to[start + i * stride] = range.map(|j| values[start + j * stride]).sum::<f64>() / cells;
         }
@@ -192,18 +213,14 @@ mod tests {
 
     #[test]
     fn the_error_of_the_whole_is_that_of_its_pixels() {
-        let all = vec![Rgb::BLACK; 64 * 48]
-            .iter()
-            .enumerate()
-            .map(|(i, _)| Rgb::splat(truth(i as u32 % 64)))
-            .collect::<Vec<_>>();
+        let all: Vec<Rgb> = (0..64 * 48).map(|i| Rgb::splat(truth(i % 64))).collect();
         for (noise, passes) in [(0.5, [50, 50]), (0.1, [20, 10])] {
             let n = (passes[0] + passes[1]) as f64;
             let bars = bars(3, noise, passes);
-            // Most of the left half is dimmer than a tenth of the mean: relative errors count less there.
-            let expected = bars.relative_to(&all);
-            assert!(expected < 1.96 * f64::from(noise) / n.sqrt());
-            assert!((bars.relative() / expected - 1.0).abs() < 0.05, "{} {expected}", bars.relative());
+            // Most of the left half is dimmer than a tenth of the mean: errors count less there.
+            let (told, found) = (bars.relative().unwrap(), bars.relative_to(&all).unwrap());
+            assert!(found < 1.96 * f64::from(noise) / n.sqrt());
+            assert!((1.0..1.08).contains(&(told / found)), "{told} {found}");
         }
     }
 
@@ -211,8 +228,45 @@ mod tests {
     fn black_pictures_have_no_errors() {
         let black = vec![Rgb::BLACK; 64 * 48];
         let bars = ErrorBars::of_halves(WINDOW, [black.clone(), black.clone()], [1, 1]);
-        assert_eq!(bars.relative(), 0.0);
+        assert_eq!(bars.relative(), None);
         assert!(bars.half_widths().iter().all(|w| *w == Rgb::BLACK));
+    }
+
+    /// A lamp that one path in a hundred finds: the error is some thousand per cent, and most pixels are black.
+    #[test]
+    fn rare_light_is_not_taken_for_darkness() {
+        let half = |h: u32| -> Vec<Rgb> {
+            (0..64 * 48)
+                .map(|i| {
+                    let mut s = SampleStream::new(StreamId { seed: 1, pixel: i, sample: h, walk: 0 });
+                    Rgb::splat(if s.next_1d() < 0.01 { 100.0 } else { 0.0 })
+                })
+                .collect()
+        };
+        let bars = ErrorBars::of_halves(WINDOW, [half(0), half(1)], [1, 1]);
+        let (told, found) = (bars.relative().unwrap(), bars.relative_to(&vec![Rgb::WHITE; 64 * 48]).unwrap());
+        assert!((0.8..1.3).contains(&(told / found)), "{told} {found}");
+    }
+
+    /// What is told of a single pixel bounds its error for 19 in 20 seeds.
+    #[test]
+    fn small_pictures_err_to_the_safe_side() {
+        let window = Window { x: 0, y: 0, width: 2, height: 1 };
+        let bounded = (0..400u32)
+            .filter(|seed| {
+                let mut s =
+                    SampleStream::new(StreamId { seed: (*seed).into(), pixel: 0, sample: 0, walk: 0 });
+                let half =
+                    std::array::from_fn(|_| (0..2).map(|_| Rgb::splat(1.0 + 0.1 * normal(&mut s))).collect());
+                let bars = ErrorBars::of_halves(window, half, [8, 8]);
+                bars.relative().unwrap() >= 1.96 * 0.1 / 2f64.sqrt()
+            })
+            .count();
+        assert!((370..=392).contains(&bounded), "{bounded} of 400");
+        // One pixel has one degree of freedom: 12.7 standard deviations.
+        let one = Window { width: 1, ..window };
+        let bars = ErrorBars::of_halves(one, [vec![Rgb::splat(1.1)], vec![Rgb::splat(0.9)]], [1, 1]);
+        assert!((bars.half_widths()[0].0[0] - 1.2706).abs() < 1e-3);
     }
 
     #[test]

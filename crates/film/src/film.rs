@@ -117,6 +117,18 @@ impl Film {
         Ok(film)
     }
 
+    /// Sets the sums of the pixels from `start` on, and what of them there is.
+    pub(crate) fn set_sums(&mut self, start: usize, sums: impl Iterator<Item = [i64; 6]>) {
+        for (pixel, sums) in self.pixels[start..].iter_mut().zip(sums) {
+            *pixel = sums.map(AtomicI64::new);
+        }
+    }
+
+    /// The sums of some pixels in quanta.
+    pub(crate) fn some_sums(&self, pixels: Range<usize>) -> impl ExactSizeIterator<Item = [i64; 6]> {
+        self.pixels[pixels].iter().map(|pixel| pixel.each_ref().map(|sum| sum.load(Relaxed)))
+    }
+
     /// The film's sizes.
     pub fn layout(&self) -> &FilmLayout {
         &self.layout
@@ -229,7 +241,7 @@ impl Film {
         self.add_counts(FilmCounts { eye_samples: eye, light_samples: light, ..FilmCounts::default() });
     }
 
-    fn add_counts(&self, counts: FilmCounts) {
+    pub(crate) fn add_counts(&self, counts: FilmCounts) {
         self.eye_samples.fetch_add(counts.eye_samples, Relaxed);
         self.light_samples.fetch_add(counts.light_samples, Relaxed);
         self.invalid.fetch_add(counts.invalid, Relaxed);
@@ -280,16 +292,13 @@ impl Film {
         if self.layout == other.layout {
             return Ok(());
         }
-        Err(FilmError::Layout(format!(
-            "films of different layouts cannot be merged: {:?} and {:?}",
-            self.layout, other.layout
-        )))
+        Err(FilmError::Layout(format!("they are of {} and {}", self.layout, other.layout)))
     }
 
     /// The sums in quanta, pixel by pixel: three channels of the eye image, then three of the light
     /// image. With [`Film::counts`], all that [`Film::restore`] needs.
     pub fn sums(&self) -> impl ExactSizeIterator<Item = [i64; 6]> {
-        self.pixels.iter().map(|pixel| pixel.each_ref().map(|sum| sum.load(Relaxed)))
+        self.some_sums(0..self.pixels.len())
     }
 
     /// Whether two films have the same layout, sums and counts.

@@ -1,5 +1,7 @@
 //! The size of a film.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
@@ -50,6 +52,17 @@ pub struct FilmLayout {
     pub window: Window,
     /// Sums are counted in units of 2 to this power.
     pub quantum_exponent: i32,
+}
+
+impl fmt::Display for FilmLayout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { width, height, window: w, quantum_exponent } = self;
+        write!(f, "{width} × {height} pixels")?;
+        if [w.width, w.height] != [*width, *height] {
+            write!(f, " (of them {} × {} from {}, {})", w.width, w.height, w.x, w.y)?;
+        }
+        write!(f, " in quanta of 2^{quantum_exponent}")
+    }
 }
 
 impl FilmLayout {

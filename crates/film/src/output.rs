@@ -50,14 +50,45 @@ fn destination(path: &Path) -> Result<PathBuf, FilmError> {
     }
 }
 
+/// The folder of a file.
+fn folder(target: &Path) -> &Path {
+    target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// How the names of temporary files begin and end that become `target`.
+fn temporary_name(target: &Path) -> (String, &'static str) {
+    let name: String = target.file_name().unwrap_or_default().to_string_lossy().chars().take(50).collect();
+    (format!(".{name}."), ".part")
+}
+
+/// Removes what writers of `path` left that were killed while they wrote. None may be writing it now.
+///
+/// # Errors
+/// What the system says.
+pub fn remove_leftovers(path: &Path) -> Result<(), FilmError> {
+    let target = destination(path)?;
+    let (folder, (start, end)) = (folder(&target), temporary_name(&target));
+    let io = |e: io::Error| FilmError::io(folder, e);
+    for entry in fs::read_dir(folder).map_err(io)? {
+        let entry = entry.map_err(io)?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let random = name.strip_prefix(&start).and_then(|rest| rest.strip_suffix(end));
+        if random.is_some_and(|r| r.len() == RANDOM && r.bytes().all(|b| b.is_ascii_alphanumeric())) {
+            fs::remove_file(entry.path()).map_err(io)?;
+        }
+    }
+    Ok(())
+}
+
+/// Characters of a temporary name that are chosen by chance.
+const RANDOM: usize = 6;
+
 /// A temporary file beside `target`, with the permissions of a file made in the ordinary way.
 fn temporary(target: &Path) -> Result<NamedTempFile, FilmError> {
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
+    let (folder, (start, end)) = (folder(target), temporary_name(target));
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".caustica-").suffix(".part");
+    builder.prefix(&start).rand_bytes(RANDOM).suffix(end);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     // Only the kind of error, because its text would speak of the temporary name.
@@ -96,6 +127,24 @@ mod tests {
     }
 
     #[test]
+    fn leftovers_of_a_file_are_removed_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.film");
+        put(&path, "film").unwrap();
+        let (file, left) = temporary(&path).unwrap().keep().unwrap();
+        drop(file);
+        let others = [".a.film.abc123.part2", ".b.film.abc123.part", ".a.film.longer1.part", "a.film.part"];
+        for other in others {
+            put(&folder.path().join(other), "mine").unwrap();
+        }
+        assert!(left.exists());
+        remove_leftovers(&path).unwrap();
+        assert!(!left.exists());
+        assert_eq!(names(folder.path()).len(), 1 + others.len());
+        assert!(remove_leftovers(&folder.path().join("none/a.film")).is_err());
+    }
+
+    #[test]
     fn the_check_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
         check_writable(&folder.path().join("new.exr")).unwrap();
@@ -117,7 +166,7 @@ mod tests {
                 let FilmError::Io { path: reported, .. } = &error else { panic!("{error:?}") };
                 assert_eq!(reported, &named, "{error}");
                 let text = error.to_string();
-                assert!(text.contains(reason) && !text.contains(".caustica-"), "{text}");
+                assert!(text.contains(reason) && !text.contains(".part"), "{text}");
             }
         }
         assert_eq!(names(folder.path()), ["plain"]);

@@ -51,6 +51,16 @@ pub fn t_p_value(t: f64, degrees: f64) -> f64 {
     }
 }
 
+/// The value beyond which Student's t of so many degrees of freedom lies with probability `tail`, on that side.
+pub fn t_quantile(tail: f64, degrees: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees.max(1.0)).map_or(f64::NAN, |d| d.inverse_cdf(1.0 - tail))
+}
+
+/// The value below which χ² of so many degrees of freedom lies with probability `tail`.
+pub fn chi_square_quantile(tail: f64, degrees: f64) -> f64 {
+    ChiSquared::new(degrees.max(1.0)).map_or(f64::NAN, |d| d.inverse_cdf(tail))
+}
+
 /// One-sample t-test that the mean is `reference`: the p-value. The variance is taken as 1e-5 at
 /// least, as Nori's `ttest` does, so that constant samples can be tested.
 pub fn student_t_test(sample: &Moments, reference: f64) -> f64 {

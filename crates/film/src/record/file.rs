@@ -1,12 +1,14 @@
 //! Film files.
 //!
 //! A line `caustica film 1`, a line of JSON (sizes, counts, what it is a film of, which samples it holds), then the
-//! sums of the two halves, six channels each, and at last the BLAKE3 hash of all before it. A channel is its length
-//! in eight bytes and that many bytes of raw deflate, which hold the sums as 64-bit integers, the lowest bytes of
-//! all first, row by row, then the next ones. All numbers are little-endian.
+//! sums of one half and those of the other in chunks of 65 536 pixels (the last one shorter), and at last the BLAKE3
+//! hash of all before it. A chunk is its length in eight bytes and that many bytes of raw deflate, which hold the sums
+//! of six channels one after the other as 64-bit integers: of each channel the lowest bytes of all pixels first, row by
+//! row, then the next ones. All numbers are little-endian.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::ops::Range;
 use std::path::Path;
 
 use flate2::Compression;
@@ -15,7 +17,7 @@ use flate2::write::DeflateEncoder;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{FilmFacts, FilmRecord};
+use super::{FilmFacts, FilmRecord, MOST_SAMPLES, Provenance};
 use crate::dual::{DualFilm, passes_by_half};
 use crate::film::{Film, FilmCounts};
 use crate::layout::FilmLayout;
@@ -25,17 +27,26 @@ use crate::{FilmError, output};
 const MAGIC: &[u8] = b"caustica film ";
 const VERSION: &[u8] = b"1\n";
 
-/// Bytes of the hash at the end.
-const HASH: usize = 32;
-
 /// The longest header in bytes.
-const LONGEST_HEADER: usize = 1 << 24;
+const LONGEST_HEADER: u64 = 1 << 20;
 
 /// Sample numbers have 32 bits.
-const MOST_SAMPLES: u64 = 1 << 32;
+const SAMPLE_NUMBERS: u64 = 1 << 32;
+
+/// Longer times of rendering are nonsense.
+const LONGEST_TIME: f64 = 1e12;
 
 /// Layers and channels of a half.
 const CHANNELS: usize = 6;
+
+/// Pixels of a chunk.
+const CHUNK: usize = 1 << 16;
+
+/// No bytes of deflate hold more than so many times as many.
+const CLOSEST_PACKING: u64 = 1040;
+
+/// Chunks that are packed at once.
+const AT_ONCE: usize = 8;
 
 #[derive(Serialize, Deserialize)]
 struct Header {
@@ -52,38 +63,37 @@ struct Header {
 /// # Errors
 /// What the system says.
 pub fn write_film(path: &Path, film: &DualFilm, facts: &FilmFacts) -> Result<(), FilmError> {
-    let planes = planes(film);
     output::write_atomically(path, |file| {
-        let mut hashed = Hashed { file: BufWriter::new(file), hasher: blake3::Hasher::new() };
-        put((film, facts), &planes, &mut hashed).map_err(|e| FilmError::io(path, e))
+        let mut hashed = Hashed { to: BufWriter::new(file), hasher: blake3::Hasher::new() };
+        put(film, facts, &mut hashed).map_err(|e| FilmError::io(path, e))
     })
 }
 
-fn put((film, facts): (&DualFilm, &FilmFacts), planes: &[Vec<u8>], to: &mut Hashed<'_>) -> io::Result<()> {
+fn put<W: Write>(film: &DualFilm, facts: &FilmFacts, to: &mut Hashed<W>) -> io::Result<()> {
     let counts = film.halves().each_ref().map(Film::counts);
     let header = Header { layout: *film.layout(), counts, facts: facts.clone() };
-    to.put(MAGIC)?;
-    to.put(VERSION)?;
-    to.put(serde_json::to_string(&header)?.as_bytes())?;
-    to.put(b"\n")?;
-    for plane in planes {
-        to.put(&(plane.len() as u64).to_le_bytes())?;
-        to.put(plane)?;
+    to.write_all(MAGIC)?;
+    to.write_all(VERSION)?;
+    to.write_all(serde_json::to_string(&header)?.as_bytes())?;
+    to.write_all(b"\n")?;
+    let pixels = film.layout().window.pixels() as usize;
+    let chunks: Vec<(&Film, Range<usize>)> =
+        film.halves().iter().flat_map(|half| chunks(pixels).map(move |c| (half, c))).collect();
+    for some in chunks.chunks(AT_ONCE) {
+        let packed: Vec<Vec<u8>> = some.par_iter().map(|(half, c)| pack(half.some_sums(c.clone()))).collect();
+        for chunk in packed {
+            to.write_all(&(chunk.len() as u64).to_le_bytes())?;
+            to.write_all(&chunk)?;
+        }
     }
     let hash = to.hasher.finalize();
-    to.file.write_all(hash.as_bytes())?;
-    to.file.flush()
+    to.to.write_all(hash.as_bytes())?;
+    to.to.flush()
 }
 
-/// The channels of both halves, packed.
-fn planes(film: &DualFilm) -> Vec<Vec<u8>> {
-    (0..2 * CHANNELS)
-        .into_par_iter()
-        .map(|i| {
-            let half = &film.halves()[i / CHANNELS];
-            pack(&half.sums().map(|sums| sums[i % CHANNELS]).collect::<Vec<_>>())
-        })
-        .collect()
+/// The pixels of each chunk.
+fn chunks(pixels: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..pixels).step_by(CHUNK).map(move |start| start..(start + CHUNK).min(pixels))
 }
 
 impl FilmRecord {
@@ -107,16 +117,15 @@ impl FilmRecord {
     /// there is no memory.
     pub fn read(path: &Path) -> Result<Self, FilmError> {
         let io = |e| FilmError::io(path, e);
-        let mut file = File::open(path).map_err(io)?;
-        let mut bytes = Vec::new();
-        // What is no film is not read to its end.
-        (&mut file).take((MAGIC.len() + VERSION.len()) as u64).read_to_end(&mut bytes).map_err(io)?;
-        if Self::is_film(&bytes) {
-            file.read_to_end(&mut bytes).map_err(io)?;
-        }
-        Self::parse(&bytes).map_err(|e| match e {
-            FilmError::Layout(message) | FilmError::Merge(message) => FilmError::format(path, message),
-            other => other,
+        let file = File::open(path).map_err(io)?;
+        let length = file.metadata().map_err(io)?.len();
+        Self::read_from(BufReader::new(file), length).map_err(|e| match e {
+            Bad::Io(e) if e.kind() == io::ErrorKind::UnexpectedEof => FilmError::format(path, DAMAGED),
+            Bad::Io(e) => io(e),
+            Bad::Film(FilmError::Layout(message) | FilmError::Merge(message)) => {
+                FilmError::format(path, message)
+            }
+            Bad::Film(other) => other,
         })
     }
 
@@ -125,86 +134,150 @@ impl FilmRecord {
     /// # Errors
     /// As [`FilmRecord::read`], without the file's name.
     pub fn parse(bytes: &[u8]) -> Result<Self, FilmError> {
-        let bad = |message: &str| FilmError::Layout(message.to_owned());
-        let rest = bytes.strip_prefix(MAGIC).ok_or_else(|| bad("it is not a film file"))?;
-        let rest = rest.strip_prefix(VERSION).ok_or_else(|| bad("it is a film file of another version"))?;
-        let damaged = || bad("the film file is cut short or damaged");
-        let body = rest.len().checked_sub(HASH).ok_or_else(damaged)?;
-        let (all, hash) = bytes.split_at(bytes.len() - HASH);
-        if blake3::hash(all).as_bytes() != hash {
-            return Err(damaged());
+        Self::read_from(bytes, bytes.len() as u64).map_err(|e| match e {
+            Bad::Io(_) => bad(DAMAGED),
+            Bad::Film(e) => e,
+        })
+    }
+
+    /// Of a file of that length; no more memory is taken than it can fill.
+    fn read_from(from: impl Read, length: u64) -> Result<Self, Bad> {
+        let mut from = Hashed { to: from, hasher: blake3::Hasher::new() };
+        let header = header(&mut from)?;
+        let pixels = Film::check_memory(header.layout.window, 2)?;
+        let bytes = 2 * 8 * CHANNELS as u64 * pixels as u64;
+        if bytes / CLOSEST_PACKING > length {
+            return Err(bad(DAMAGED).into());
         }
-        let rest = &rest[..body];
-        let end = rest.iter().take(LONGEST_HEADER).position(|b| *b == b'\n').ok_or_else(damaged)?;
-        let header: Header = serde_json::from_slice(&rest[..end])
-            .map_err(|e| FilmError::Layout(format!("the film file's header cannot be read: {e}")))?;
-        header.check_counts()?;
-        // Before any memory is taken for the sums.
-        let _ = DualFilm::new(header.layout)?;
-        let film = unpack_film(&header, &rest[end + 1..]).ok_or_else(damaged)?;
+        let mut film = DualFilm::new(header.layout)?;
+        for (half, counts) in film.halves_mut().iter_mut().zip(header.counts) {
+            for chunk in chunks(pixels) {
+                let sums = chunk_of(&mut from, chunk.len())?;
+                half.set_sums(chunk.start, sums);
+            }
+            half.add_counts(counts);
+        }
+        let expected = from.hasher.finalize();
+        let mut hash = Vec::new();
+        from.to.take(expected.as_bytes().len() as u64 + 1).read_to_end(&mut hash)?;
+        if hash != expected.as_bytes() {
+            return Err(bad(DAMAGED).into());
+        }
         Ok(Self { film, facts: header.facts })
     }
 }
 
+const DAMAGED: &str = "the film file is cut short or damaged";
+
+fn bad(message: &str) -> FilmError {
+    FilmError::Layout(message.to_owned())
+}
+
+/// Why a film cannot be read.
+enum Bad {
+    Io(io::Error),
+    Film(FilmError),
+}
+
+impl From<io::Error> for Bad {
+    fn from(e: io::Error) -> Self {
+        Self::Io(e)
+    }
+}
+
+impl From<FilmError> for Bad {
+    fn from(e: FilmError) -> Self {
+        Self::Film(e)
+    }
+}
+
+/// The checked header.
+fn header(from: &mut Hashed<impl Read>) -> Result<Header, Bad> {
+    let mut start = Vec::new();
+    from.by_ref().take((MAGIC.len() + VERSION.len()) as u64).read_to_end(&mut start)?;
+    let version = start.strip_prefix(MAGIC).ok_or_else(|| bad("it is not a film file"))?;
+    if version != VERSION {
+        return Err(bad("it is a film file of another version").into());
+    }
+    let mut line = Vec::new();
+    for byte in from.by_ref().take(LONGEST_HEADER).bytes() {
+        match byte? {
+            b'\n' => {
+                let header: Header = serde_json::from_slice(&line)
+                    .map_err(|e| bad(&format!("the film file's header cannot be read: {e}")))?;
+                header.layout.check()?;
+                header.check()?;
+                return Ok(header);
+            }
+            byte => line.push(byte),
+        }
+    }
+    Err(bad(DAMAGED).into())
+}
+
 impl Header {
-    /// Whether the counts are those of the samples that are said to be there.
-    fn check_counts(&self) -> Result<(), FilmError> {
+    /// Whether the counts are those of the samples that are said to be there, and all else makes sense.
+    fn check(&self) -> Result<(), FilmError> {
         let ranges = self.facts.samples.as_slice();
         let expected = ranges.iter().map(|r| passes_by_half(r.clone()));
         let expected = expected.fold([0, 0], |sum, n| [sum[0] + n[0], sum[1] + n[1]]);
-        let right = |of: fn(&FilmCounts) -> u64| {
-            let counts = self.counts.each_ref().map(of);
-            counts == [0, 0] || counts == expected
-        };
-        let in_reach = ranges.last().is_none_or(|r| r.end <= MOST_SAMPLES);
-        if in_reach && right(|c| c.eye_samples) && right(|c| c.light_samples) && self.facts.seconds >= 0.0 {
-            return Ok(());
+        let eye = self.counts.map(|c| c.eye_samples);
+        let light = self.counts.map(|c| c.light_samples);
+        let all = |counts| counts == expected;
+        let none = |counts| counts == [0, 0];
+        let counted = (all(eye) && (all(light) || none(light))) || (none(eye) && all(light));
+        let in_reach = ranges.last().is_none_or(|r| r.end <= SAMPLE_NUMBERS);
+        if !counted || !in_reach || self.facts.samples.total() > MOST_SAMPLES {
+            return Err(bad("the film file's numbers of samples do not fit together"));
         }
-        Err(FilmError::Layout("the film file's numbers of samples do not fit together".to_owned()))
+        if !(0.0..LONGEST_TIME).contains(&self.facts.seconds) {
+            return Err(bad("the film file's time of rendering makes no sense"));
+        }
+        let Provenance { scene, scene_hash, settings } = &self.facts.provenance;
+        let mut texts = [scene, scene_hash].into_iter().chain(settings.iter().flat_map(|(n, v)| [n, v]));
+        if texts.any(|t| t.chars().any(char::is_control)) {
+            return Err(bad("the film file's header holds control characters"));
+        }
+        Ok(())
     }
 }
 
-/// A file whose bytes are hashed while they are written.
-struct Hashed<'a> {
-    file: BufWriter<&'a mut File>,
+/// Bytes that are hashed on their way.
+struct Hashed<T> {
+    to: T,
     hasher: blake3::Hasher,
 }
 
-impl Hashed<'_> {
-    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.hasher.update(bytes);
-        self.file.write_all(bytes)
+impl<W: Write> Write for Hashed<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.to.write(bytes)?;
+        self.hasher.update(&bytes[..count]);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.to.flush()
     }
 }
 
-/// The film of those channels, which fill the bytes exactly; the sizes were checked.
-fn unpack_film(header: &Header, mut bytes: &[u8]) -> Option<DualFilm> {
-    let count = header.layout.window.pixels() as usize;
-    let mut planes = Vec::new();
-    for _ in 0..2 * CHANNELS {
-        let (length, rest) = bytes.split_first_chunk::<8>()?;
-        let (plane, rest) = rest.split_at_checked(u64::from_le_bytes(*length).try_into().ok()?)?;
-        planes.push(plane);
-        bytes = rest;
+impl<R: Read> Read for Hashed<R> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = self.to.read(bytes)?;
+        self.hasher.update(&bytes[..count]);
+        Ok(count)
     }
-    if !bytes.is_empty() {
-        return None;
-    }
-    let channels: Vec<Vec<i64>> = planes.par_iter().map(|p| unpack(p, count)).collect::<Option<_>>()?;
-    let half = |h: usize| {
-        let channels = &channels[h * CHANNELS..][..CHANNELS];
-        let sums: Vec<[i64; CHANNELS]> =
-            (0..count).map(|i| std::array::from_fn(|c| channels[c][i])).collect();
-        Film::restore(header.layout, &sums, header.counts[h]).ok()
-    };
-    DualFilm::of_halves([half(0)?, half(1)?]).ok()
 }
 
-/// Integers as compressed bytes: those of equal weight lie together, because the upper ones are nearly all alike.
-fn pack(values: &[i64]) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(8 * values.len());
-    for k in 0..8 {
-        bytes.extend(values.iter().map(|v| v.to_le_bytes()[k]));
+/// Sums as compressed bytes: those of equal weight lie together, because the upper ones are nearly all alike.
+fn pack(sums: impl ExactSizeIterator<Item = [i64; CHANNELS]>) -> Vec<u8> {
+    let count = sums.len();
+    let mut bytes = vec![0; 8 * CHANNELS * count];
+    for (i, sums) in sums.enumerate() {
+        for (c, sum) in sums.into_iter().enumerate() {
+            for (k, byte) in sum.to_le_bytes().into_iter().enumerate() {
+                bytes[(8 * c + k) * count + i] = byte;
+            }
+        }
     }
     let mut encoder = DeflateEncoder::new(Vec::new(), Compression::fast());
     // Memory takes whatever is written to it.
@@ -212,14 +285,32 @@ fn pack(values: &[i64]) -> Vec<u8> {
     encoder.finish().unwrap_or_default()
 }
 
-/// Exactly so many integers; `None` if the bytes hold anything else.
-fn unpack(packed: &[u8], count: usize) -> Option<Vec<i64>> {
-    let mut bytes = Vec::new();
-    let mut decoder = DeflateDecoder::new(packed).take(8 * count as u64 + 1);
-    decoder.read_to_end(&mut bytes).ok()?;
-    if bytes.len() != 8 * count {
-        return None;
+/// The sums of the next chunk, which has exactly so many pixels.
+fn chunk_of(
+    from: &mut Hashed<impl Read>,
+    count: usize,
+) -> Result<impl Iterator<Item = [i64; CHANNELS]>, Bad> {
+    let mut length = [0; 8];
+    from.read_exact(&mut length)?;
+    let (length, raw) = (u64::from_le_bytes(length), 8 * CHANNELS * count);
+    let mut packed = Vec::new();
+    // Deflate makes nothing longer by more than a thousandth and a few bytes.
+    if length <= raw as u64 + raw as u64 / 1000 + 64 {
+        from.by_ref().take(length).read_to_end(&mut packed)?;
     }
-    let value = |i: usize| i64::from_le_bytes(std::array::from_fn(|k| bytes[k * count + i]));
-    Some((0..count).map(value).collect())
+    if packed.len() as u64 != length {
+        return Err(bad(DAMAGED).into());
+    }
+    let bytes = inflated(&packed, raw).ok_or_else(|| bad(DAMAGED))?;
+    let sum =
+        move |i: usize, c: usize| i64::from_le_bytes(std::array::from_fn(|k| bytes[(8 * c + k) * count + i]));
+    Ok((0..count).map(move |i| std::array::from_fn(|c| sum(i, c))))
+}
+
+/// Exactly so many bytes; `None` if the compressed ones hold anything else.
+fn inflated(packed: &[u8], length: usize) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut decoder = DeflateDecoder::new(packed);
+    decoder.by_ref().take(length as u64 + 1).read_to_end(&mut bytes).ok()?;
+    (bytes.len() == length && decoder.total_in() == packed.len() as u64).then_some(bytes)
 }

@@ -13,6 +13,9 @@ pub use ranges::SampleRanges;
 use crate::FilmError;
 use crate::dual::DualFilm;
 
+/// The most samples per pixel of a film: so many of the brightest lamp do not overflow its sums.
+pub const MOST_SAMPLES: u64 = 1 << 27;
+
 /// What a film is a film of. Films of the same can be merged.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {
@@ -69,13 +72,21 @@ impl FilmRecord {
     /// If it is a film of another scene, another size or other settings, or if both hold the same samples.
     pub fn check_mergeable(&self, other: &Self) -> Result<(), FilmError> {
         let (ours, theirs) = (&self.facts, &other.facts);
+        let refuse = |why: String| Err(FilmError::Merge(why));
+        let layouts = [self, other].map(|r| *r.film.layout());
+        if layouts[0] != layouts[1] {
+            return refuse(format!("they are of {} and {}", layouts[0], layouts[1]));
+        }
         if let Some(what) = ours.provenance.difference(&theirs.provenance) {
-            return Err(FilmError::Merge(format!("they differ in {what}")));
+            return refuse(format!("they differ in {what}"));
         }
         if let Some(twice) = ours.samples.overlap(&theirs.samples) {
-            return Err(FilmError::Merge(format!("both hold the samples {}..{}", twice.start, twice.end)));
+            return refuse(format!("both hold the samples {}..{}", twice.start, twice.end));
         }
-        self.film.halves()[0].check_same_layout(&other.film.halves()[0])
+        if ours.samples.total() + theirs.samples.total() > MOST_SAMPLES {
+            return refuse(format!("a film holds up to {MOST_SAMPLES} samples per pixel"));
+        }
+        Ok(())
     }
 
     /// Adds another film. The bits of the sum do not depend on the order or the grouping in which films are merged,

@@ -82,7 +82,8 @@ fn films_of_something_else_are_refused_and_leave_the_first_as_it_is() {
     }
     let other_size = FilmLayout { quantum_exponent: -29, ..layout() };
     let other = FilmRecord { film: DualFilm::new(other_size).unwrap(), ..record(2..4) };
-    assert!(first.merge(&other).unwrap_err().to_string().contains("different layouts"));
+    let error = first.merge(&other).unwrap_err().to_string();
+    assert!(error.contains("24 × 16 pixels (of them 17 × 11 from 3, 1) in quanta of 2^-29"), "{error}");
     assert_eq!((first.film.fingerprint(), first.facts.samples.total()), (before, 2));
     // The name alone is no difference.
     first.merge(&changed(&|r| r.facts.provenance.scene = "kopie.xml".into())).unwrap();
@@ -103,6 +104,24 @@ fn files_round_trip_to_the_bit() {
         read.write(&path).unwrap();
         assert_eq!(fs::read(&path).unwrap(), bytes);
     }
+}
+
+/// Films of more pixels than a chunk has.
+#[test]
+fn large_films_round_trip() {
+    let window = Window { x: 0, y: 0, width: 300, height: 500 };
+    let layout = FilmLayout { width: 300, height: 500, window, quantum_exponent: -20 };
+    let film = DualFilm::new(layout).unwrap();
+    for i in 0..150_000u32 {
+        let pass = u64::from(i % 2);
+        film.half(pass).add_eye([i % 300, i / 300], Rgb::new(i as f32, -1.0, 1.0 / (i + 1) as f32));
+    }
+    film.finish_passes(0..2, true, false);
+    let facts = FilmFacts { provenance: provenance(), samples: (0..2).into(), seconds: 0.0 };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.film");
+    write_film(&path, &film, &facts).unwrap();
+    assert!(FilmRecord::read(&path).unwrap().film.bits_equal(&film));
 }
 
 /// The bytes of a file with a changed header and a right hash.
@@ -136,6 +155,7 @@ fn damaged_and_foreign_files_are_refused() {
         assert!(error(&bytes[..length]).contains("cut short or damaged"), "{length}");
     }
     assert!(error(b"").contains("not a film file") && error(&bytes[..5]).contains("not a film file"));
+    assert!(error(&[&bytes[..], b"more"].concat()).contains("cut short or damaged"));
     assert!(error(b"caustica film 2\n{}").contains("another version"));
     for at in (0..bytes.len()).step_by(97) {
         let mut changed = bytes.clone();
@@ -153,6 +173,10 @@ fn damaged_and_foreign_files_are_refused() {
     assert!(header("\"height\":11", "\"height\":10").contains("cut short or damaged"));
     assert!(header("\"start\":0", "\"start\":1").contains("do not fit together"));
     assert!(header("\"end\":3", "\"end\":4").contains("do not fit together"));
+    assert!(header("\"eye_samples\":2", "\"eye_samples\":0").contains("do not fit together"));
+    assert!(header("\"end\":3", "\"end\":99999999999").contains("do not fit together"));
+    assert!(header("\"seconds\":1.5", "\"seconds\":1e300").contains("makes no sense"));
+    assert!(header("küche", "k\\u001b[2Jche").contains("control characters"));
     assert!(header("\"seconds\":", "\"second\":").contains("header cannot be read"));
     assert!(error(&sealed([&bytes[..bytes.len() - 32], b"more"].concat())).contains("damaged"));
     assert!(error(&sealed(bytes[..bytes.len() - 40].to_vec())).contains("damaged"));
@@ -176,6 +200,17 @@ fn announcements_are_not_believed() {
     });
     let error = FilmRecord::parse(&huge).unwrap_err();
     assert!(matches!(error, FilmError::TooLarge { .. }), "{error:?}");
+    // One that the memory would hold, but not so short a file.
+    let large = with_header(&bytes, |h| {
+        h.replacen("\"width\":24,\"height\":16", "\"width\":9000,\"height\":4000", 1).replacen(
+            "\"width\":17,\"height\":11",
+            "\"width\":4500,\"height\":3900",
+            1,
+        )
+    });
+    let start = std::time::Instant::now();
+    assert!(FilmRecord::parse(&large).unwrap_err().to_string().contains("damaged"));
+    assert!(start.elapsed().as_secs_f64() < 0.2);
     let small = with_header(&bytes, |h| h.replacen("\"width\":17", "\"width\":1", 1));
     assert!(FilmRecord::parse(&small).unwrap_err().to_string().contains("damaged"));
 }
