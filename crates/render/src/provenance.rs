@@ -10,6 +10,9 @@ use caustica_transport::Settings;
 use crate::names::integrator_name;
 use crate::session::{heuristic_name, sampler_name};
 
+/// Films of different numbers do not add up: raise it when a change gives samples other bits.
+const SAMPLING: u32 = 1;
+
 /// All that a sample depends on beside the scene and its own number, by name.
 pub(crate) fn facts(settings: &Settings) -> BTreeMap<String, String> {
     let integrator = settings.integrator;
@@ -17,12 +20,16 @@ pub(crate) fn facts(settings: &Settings) -> BTreeMap<String, String> {
         ("integrator", integrator_name(&integrator).to_owned()),
         ("seed", settings.seed.to_string()),
         ("sampler", sampler_name(settings.sampler).to_owned()),
-        ("strategies", settings.strategies.to_string()),
+        ("strategies", settings.strategies.to_string().split_whitespace().collect()),
         ("heuristic", heuristic_name(settings.heuristic).to_owned()),
         ("rouletteDepth", settings.roulette_start().to_string()),
         ("maxDepth", settings.max_depth.map_or_else(|| "unlimited".to_owned(), |d| d.to_string())),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("sampling", SAMPLING.to_string()),
     ];
+    if settings.exhaustive_weights {
+        facts.push(("weights", "exhaustive".to_owned()));
+    }
     if matches!(
         integrator,
         Integrator::Av { .. } | Integrator::Simple { .. } | Integrator::Directional { .. }
@@ -45,7 +52,10 @@ pub fn provenance(name: &str, content_hash: &str, settings: &Settings) -> Proven
 pub fn content_hash(description: &mut Description) -> String {
     let (integrator, samples) = (description.integrator, description.samples);
     (description.integrator, description.samples) = (Integrator::default(), 0);
-    let camera = description.camera.origin.take();
+    let (camera, crop) = (description.camera.origin.take(), description.film.crop);
+    // A crop of everything is none.
+    let (width, height) = (description.film.width, description.film.height);
+    description.film.crop = crop.filter(|c| [c.width, c.height] != [width, height]);
     let materials: Vec<_> = description.materials.iter_mut().map(|m| m.origin.take()).collect();
     let lights: Vec<_> = description.lights.iter_mut().map(|l| l.origin.take()).collect();
     let shapes: Vec<_> =
@@ -58,6 +68,7 @@ pub fn content_hash(description: &mut Description) -> String {
     debug_assert!(written.is_ok(), "{written:?}");
 
     (description.integrator, description.samples, description.camera.origin) = (integrator, samples, camera);
+    description.film.crop = crop;
     description.materials.iter_mut().zip(materials).for_each(|(m, origin)| m.origin = origin);
     description.lights.iter_mut().zip(lights).for_each(|(l, origin)| l.origin = origin);
     description.shapes.iter_mut().zip(shapes).for_each(|(s, (origin, name))| {
@@ -70,6 +81,7 @@ pub fn content_hash(description: &mut Description) -> String {
 mod tests {
     use super::*;
     use caustica_scene::Origin;
+    use caustica_scene::description::Crop;
     use caustica_testkit::scenes;
 
     #[test]
@@ -85,9 +97,13 @@ mod tests {
         let moved = scene.clone();
         assert_eq!(of(&mut scene), hash);
         assert_eq!(scene, moved);
+        let (width, height) = (scene.film.width, scene.film.height);
+        scene.film.crop = Some(Crop { x: 0, y: 0, width, height });
+        assert_eq!(of(&mut scene), hash);
         for change in [
             &(|d: &mut Description| d.film.width += 1) as &dyn Fn(&mut Description),
             &|d| d.camera.near *= 1.0001,
+            &|d| d.film.crop = Some(Crop { x: 0, y: 0, width: 1, height: 1 }),
             &|d| _ = d.shapes.pop(),
             &|d| _ = d.materials.pop(),
         ] {

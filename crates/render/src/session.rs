@@ -3,8 +3,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use caustica_film::{
-    DualFilm, Film, FilmError, FilmFacts, FilmLayout, FilmRecord, LightBuffer, Metadata, Provenance, Window,
-    half_of,
+    DualFilm, Film, FilmError, FilmFacts, FilmLayout, FilmRecord, LightBuffer, MOST_SAMPLES, Metadata,
+    Provenance, Window, half_of,
 };
 use caustica_math::{Rgb, Sampler, Vec2};
 use caustica_scene::Scene;
@@ -149,23 +149,29 @@ impl<'a> Session<'a> {
     /// what it would have become without a pause.
     ///
     /// # Errors
-    /// A film of something else than `provenance`, or whose samples are not those from the first one on.
+    /// A film of something else than `provenance`, whose samples are not those from the first one on, or that has more
+    /// than the options ask for.
     pub fn resume(
         scene: &'a Scene,
         options: RenderOptions,
         (record, provenance): (FilmRecord, &Provenance),
     ) -> Result<Self, RenderError> {
         let refuse = |why: String| Err(RenderError::Continue(why));
+        let (ours, theirs) = (film_layout(scene, &options.settings.integrator), *record.film.layout());
+        if ours != theirs {
+            return refuse(format!("the film is of {theirs}, not of {ours}"));
+        }
         if let Some(what) = record.facts.provenance.difference(provenance) {
             return refuse(format!("the film cannot be continued: {what} changed"));
         }
         let first = u64::from(options.first_sample);
-        if record.facts.samples.single().is_none_or(|r| !r.is_empty() && r.start != first) {
-            let samples = &record.facts.samples;
+        let samples = &record.facts.samples;
+        if samples.single().is_none_or(|r| !r.is_empty() && r.start != first) {
             return refuse(format!("the film holds the samples {samples}, not those from {first} on"));
         }
-        if *record.film.layout() != film_layout(scene, &options.settings.integrator) {
-            return refuse("the film cannot be continued: its size or its quantum changed".to_owned());
+        let (there, asked) = (samples.total(), options.samples);
+        if there > u64::from(asked) {
+            return refuse(format!("the film holds {there} samples per pixel already, more than {asked}"));
         }
         let kernel = Kernel::new(scene, options.settings.clone());
         Ok(Self { kernel, film: record.film, options, seconds: record.facts.seconds })
@@ -196,7 +202,7 @@ impl<'a> Session<'a> {
     /// What to write beside the picture: how it was made.
     pub fn metadata(&self, report: &Report) -> Metadata {
         let mut m: Metadata = facts(&self.options.settings).into_iter().collect();
-        m.set("seconds", format!("{:.3}", report.seconds));
+        m.set("seconds", format!("{:.3}", self.seconds + report.seconds));
         if let Some(noise) = report.noise {
             m.set("noise", format!("{noise:.5}"));
         }
@@ -230,9 +236,8 @@ impl<'a> Session<'a> {
         let per_thread = 2 * LightBuffer::memory(window.pixels());
         let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;
         let (first, done) = (u64::from(self.options.first_sample), self.samples());
-        let samples = budget.samples.min(u32::MAX - self.options.first_sample);
         let workers =
-            Workers { window, start: first, done, budget: Budget { samples, ..budget }, threads, control };
+            Workers { window, start: first, done, budget: self.within_reach(budget), threads, control };
         let added = workers.run(|units| self.work(units, buffered), progress)?;
         let (eye, light) =
             (self.options.settings.integrator != Integrator::Light, self.kernel.has_light_image());
@@ -243,7 +248,13 @@ impl<'a> Session<'a> {
 
     /// For how long the options say.
     pub(crate) fn budget(&self) -> Budget {
-        self.options.budget()
+        self.within_reach(self.options.budget())
+    }
+
+    /// No more samples than there are numbers for, nor than a film holds.
+    fn within_reach(&self, budget: Budget) -> Budget {
+        let most = (u32::MAX - self.options.first_sample).min(MOST_SAMPLES as u32);
+        Budget { samples: budget.samples.min(most), ..budget }
     }
 
     /// Samples per pixel in the film.

@@ -17,6 +17,14 @@ pub struct Stages {
 /// With fewer samples a pixel nothing is said about the noise: there may be paths that no sample has found yet.
 const FEWEST: u64 = 16;
 
+/// A render that is to stop at a noise level, and has found no light at all, gives up here.
+const DARK: u64 = 1 << 16;
+
+/// Whether the noise is looked at when there are so many samples.
+fn is_look(samples: u64) -> bool {
+    samples >= FEWEST && next_look(samples - 1) == samples
+}
+
 /// The next number of samples at which the noise is looked at. It depends on nothing but the samples, so that a
 /// session stops at the same number however often it was interrupted.
 fn next_look(samples: u64) -> u64 {
@@ -42,7 +50,13 @@ impl Session<'_> {
         let (whole, start) = (self.budget(), Instant::now());
         let (before, mut saved) = (self.samples(), start);
         loop {
-            let look = stages.noise.map_or(u64::MAX, |_| next_look(self.samples()));
+            let done = self.samples();
+            // A film that was quiet enough when it was interrupted stays as it is.
+            let look = match stages.noise {
+                Some(most) if is_look(done) && self.is_quiet(most) => done,
+                Some(_) => next_look(done),
+                None => u64::MAX,
+            };
             let samples = u64::from(whole.samples).min(look) as u32;
             let until = |from: Instant, time: Duration| time.saturating_sub(from.elapsed());
             let left = whole.time.map(|t| until(start, t));
@@ -51,8 +65,7 @@ impl Session<'_> {
                 progress(&overall(p, start.elapsed(), whole));
             })?;
             let report = self.total(report, start.elapsed(), before);
-            let looked = report.samples >= look;
-            let quiet = looked && stages.noise.zip(self.noise()).is_some_and(|(most, noise)| noise <= most);
+            let quiet = report.samples >= look && stages.noise.is_some_and(|most| self.is_quiet(most));
             let late = whole.time.is_some_and(|t| start.elapsed() >= t);
             if quiet || late || report.stopped || report.samples >= u64::from(whole.samples) {
                 return Ok(Report { noise: self.noise(), ..report });
@@ -64,9 +77,14 @@ impl Session<'_> {
         }
     }
 
+    /// Whether the noise is no more than that; where there is no light, when it has been looked for long enough.
+    fn is_quiet(&self, most: f64) -> bool {
+        self.noise().map_or(self.samples() >= DARK, |noise| noise <= most)
+    }
+
     /// The relative error of the whole film, if it is known.
     fn noise(&self) -> Option<f64> {
-        self.film().error_bars().map(|bars| bars.relative())
+        self.film().error_bars().and_then(|bars| bars.relative())
     }
 
     /// The report on all stages, of that on the last one.
@@ -94,6 +112,7 @@ mod tests {
         let expected =
             [0, 16, 18, 20, 22, 24, 26, 28, 30, 32, 36, 40, 44, 48, 52, 56, 60, 64, 72, 80, 88, 96];
         assert_eq!(all, expected);
+        assert!((0..97).all(|n| is_look(n) == (all.contains(&n) && n > 0)));
         for samples in 0..90 {
             assert_eq!(next_look(samples), *all.iter().find(|n| **n > samples).unwrap());
         }

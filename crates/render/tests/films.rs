@@ -114,7 +114,9 @@ fn a_film_of_something_else_is_not_continued() {
     let why = refused(gap, options("bdpt", 3, 9), 3);
     assert!(why.contains("0..2, 4..5"), "{why}");
     let why = refused(part(&scene, "normals", 0..2), options("bdpt", 3, 9), 3);
-    assert!(why.contains("its size or its quantum changed"), "{why}");
+    assert!(why.contains("the film is of 32 × 24 pixels in quanta of"), "{why}");
+    let why = refused(part(&scene, "bdpt", 0..4), options("bdpt", 3, 3), 3);
+    assert!(why.contains("holds 4 samples per pixel already, more than 3"), "{why}");
 }
 
 #[test]
@@ -150,17 +152,71 @@ fn rendering_stops_at_the_noise_that_is_asked_for_wherever_it_was_interrupted() 
     let report = run(&session, &stages);
     assert!((17..10_000).contains(&report.samples), "{report:?}");
     assert!(report.noise.unwrap() <= 0.15 && !report.stopped);
-    // A tenth of the samples fewer, and it would not have been enough.
+    // At the look before it would not have been enough.
     let shorter = Session::new(&scene, options("bdpt", 3, (report.samples * 8 / 9) as u32)).unwrap();
     let before = run(&shorter, &Stages::default());
     assert!(before.noise.unwrap() > 0.15, "{before:?}");
-    let half = part(&scene, "bdpt", 0..(report.samples / 2 + 1) as u32);
-    let resumed = Session::resume(&scene, options("bdpt", 3, 100_000), (half, &provenance(3))).unwrap();
-    assert_eq!(run(&resumed, &stages).samples, report.samples);
-    assert!(resumed.film().bits_equal(session.film()));
+    // Interrupted on the way, or when all was done.
+    for there in [report.samples / 2 + 1, report.samples] {
+        let film = part(&scene, "bdpt", 0..there as u32);
+        let resumed = Session::resume(&scene, options("bdpt", 3, 100_000), (film, &provenance(3))).unwrap();
+        assert_eq!(run(&resumed, &stages).samples, report.samples);
+        assert!(resumed.film().bits_equal(session.film()));
+    }
 }
 
-/// Renders of many seeds, and their mean.
+/// A lamp that paths hit by chance only, a few in ten thousand: rendering does not stop while most of its light has
+/// not been found, whatever the seed.
+#[test]
+fn rare_light_is_waited_for() {
+    let mut d = scenes::open_box();
+    (d.film.width, d.film.height) = (32, 24);
+    d.shapes.retain(|s| s.emission.is_none());
+    d.lights.clear();
+    let m = build::diffuse(&mut d, 0.5);
+    let lamp = build::sphere(&mut d, [0.0, 0.6, 0.0], 0.05, m);
+    build::emit(&mut d, lamp, 400.0);
+    let scene = Scene::new(d).unwrap().0;
+    let truth = Session::new(&scene, options("path", 77, 2000)).unwrap();
+    run(&truth);
+    let truth: Vec<Rgb> = truth.film().develop().eye;
+    for seed in 0..6 {
+        let session = Session::new(&scene, options("naive", seed, 100_000)).unwrap();
+        let stages = Stages { every: None, noise: Some(1.0) };
+        let report = session.run_in_stages(&stages, &Control::default(), (|_: &_| (), |_: &_| ())).unwrap();
+        let found = session.film().error_bars().unwrap().relative_to(&truth).unwrap();
+        let told = report.noise.unwrap();
+        println!("seed {seed}: {} samples, told {told:.3}, found {found:.3}", report.samples);
+        assert!(told <= 1.0 && found <= 1.5, "seed {seed}: {told} for {found}");
+    }
+}
+
+/// Of a black picture nothing is known, so that rendering goes on; in the end it gives up.
+#[test]
+fn darkness_is_no_certainty() {
+    let mut d = Description::default();
+    (d.film.width, d.film.height) = (1, 1);
+    let scene = Scene::new(d).unwrap().0;
+    let session = Session::new(&scene, options("path", 0, u32::MAX)).unwrap();
+    let stages = Stages { every: None, noise: Some(0.5) };
+    let report = session.run_in_stages(&stages, &Control::default(), (|_: &_| (), |_: &_| ())).unwrap();
+    assert_eq!((report.noise, report.samples), (None, 1 << 16));
+}
+
+/// If this fails after a change, samples have other bits now: raise `SAMPLING` in `src/provenance.rs`, so that films of
+/// before are not mixed with films of after, and put the new number here.
+#[test]
+fn samples_have_the_bits_of_their_version() {
+    let scene = scene();
+    let prints = ["bdpt", "path", "light"].map(|i| {
+        let session = Session::new(&scene, options(i, 3, 2)).unwrap();
+        run(&session);
+        session.film().fingerprint()
+    });
+    assert_eq!(prints, [0, 0, 0], "{prints:#x?}");
+}
+
+/// Renders of many seeds, their mean, and the errors of their whole pictures as told and as found.
 fn renders(
     scene: &Scene,
     integrator: &str,
@@ -180,7 +236,7 @@ fn renders(
             pictures.iter().fold(Rgb::BLACK, |sum, p| sum + p.eye[i] + p.light[i]) * (1.0 / seeds as f32)
         })
         .collect();
-    let errors = bars.iter().map(|b| [b.relative(), b.relative_to(&mean)]).collect();
+    let errors = bars.iter().map(|b| [b.relative().unwrap(), b.relative_to(&mean).unwrap()]).collect();
     (pictures, mean, errors)
 }
 
@@ -201,14 +257,16 @@ fn coverage(pictures: &[Picture], mean: &[Rgb]) -> f64 {
     inside as f64 / all as f64
 }
 
-/// The bars reach the truth for 90 to 98 pixels in 100, and the error of the whole picture is the true one within a
-/// tenth, whether it lies in the eye image or in the light image, and at numbers of samples where the halves are
-/// uneven. (Over 16 renders of 2304 values that depend on each other within squares of 25, chance moves the
+/// The bars reach the truth for 90 to 98 pixels in 100, and the error of the whole picture bounds the true one without
+/// being a third larger, whether it lies in the eye image or in the light image, and at numbers of samples where the
+/// halves are uneven. (Over 16 renders of 2304 values that depend on each other within squares of 25, chance moves the
 /// coverage by less than 1 %.)
 #[test]
 fn error_bars_reach_the_truth() {
     let scene = scene();
-    for (integrator, samples) in [("bdpt", 64), ("bdpt", 96), ("light", 64), ("path", 128), ("bdpt", 20)] {
+    for (integrator, samples) in
+        [("bdpt", 64), ("bdpt", 96), ("light", 64), ("path", 128), ("bdpt", 20), ("bdpt", 41)]
+    {
         let (pictures, mean, errors) = renders(&scene, integrator, samples, 16);
         let covered = coverage(&pictures, &mean);
         let own = (1.0f64 - 1.0 / 16.0).sqrt();
@@ -219,6 +277,6 @@ fn error_bars_reach_the_truth() {
             100.0 * covered
         );
         assert!((0.90..=0.98).contains(&covered), "{integrator} {samples}: {covered}");
-        assert!((0.9..=1.2).contains(&(told / found)), "{integrator} {samples}: {told} for {found}");
+        assert!((0.97..=1.33).contains(&(told / found)), "{integrator} {samples}: {told} for {found}");
     }
 }
