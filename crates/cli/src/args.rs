@@ -129,8 +129,9 @@ pub struct Render {
     /// thousand. Films of other ranges can be added by `caustica merge`
     #[arg(long, value_name = "A..B", conflicts_with = "spp", value_parser = parse_samples)]
     pub samples: Option<(u32, u32)>,
-    /// Stop when a typical pixel is right within this part of its brightness, with 95 % certainty: 0.01 or 1%. The
-    /// number of samples is then unlimited, if --spp does not say otherwise
+    /// Stop when a typical pixel is right within this part of the brightness around it, with 95 % certainty: 0.01 or 1%.
+    /// The number of samples is then 16 at least, and unlimited if --spp does not say otherwise. Light that no sample
+    /// has found yet cannot be counted
     #[arg(long, value_name = "ERROR", value_parser = parse_noise)]
     pub noise: Option<f64>,
     #[command(flatten)]
@@ -152,13 +153,13 @@ pub struct Render {
 /// How a long render is kept safe.
 #[derive(Debug, Args)]
 pub struct Checkpoint {
-    /// Keep what is rendered so far in this film file, which is replaced whole or not at all
+    /// Keep what is rendered so far in this file, which ends in .film and is replaced whole or not at all
     #[arg(long = "checkpoint", value_name = "FILE")]
     pub file: Option<PathBuf>,
     /// How often: 60s, 10m
     #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", requires = "file")]
     pub every: Duration,
-    /// Go on where the checkpoint ends, if it is there
+    /// Go on where the checkpoint ends, if it is there; --time counts anew
     #[arg(long, requires = "file")]
     pub resume: bool,
 }
@@ -615,7 +616,7 @@ fn parse_noise(text: &str) -> Result<f64, String> {
     };
     match error {
         Ok(e) if e > 0.0 && e < 10.0 => Ok(e),
-        _ => Err("use a positive number such as 0.01, or 1%".into()),
+        _ => Err("use a positive number below 10, such as 0.01, or 1%".into()),
     }
 }
 

@@ -4,11 +4,12 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use caustica::film::{FilmError, FilmRecord, Provenance, check_writable, write_film};
+use caustica::film::{FilmRecord, Provenance, check_writable, remove_leftovers, write_film};
 use caustica::{RenderOptions, Report, Scene, Session};
 
 use crate::args;
 use crate::failure::Failure;
+use crate::outputs::is_film;
 
 /// Where a render's film is kept.
 pub struct Checkpoint {
@@ -25,9 +26,13 @@ impl Checkpoint {
     /// A file that is there without a wish to continue it: it may hold the work of hours.
     pub fn open(args: &args::Checkpoint) -> Result<Option<(Self, Option<FilmRecord>)>, Failure> {
         let Some(path) = args.file.clone() else { return Ok(None) };
+        if !is_film(&path) {
+            return Err(Failure::Usage(format!("the checkpoint `{}` must end in .film", path.display())));
+        }
         let record = match (path.try_exists(), args.resume) {
+            (Ok(true), _) if is_empty(&path) => None,
             (Ok(true), true) => Some(FilmRecord::read(&path).map_err(|e| Failure::input(&path, e))?),
-            (Ok(true), false) if !is_empty(&path) => {
+            (Ok(true), false) => {
                 return Err(Failure::Output(format!(
                     "the checkpoint `{}` is there already: go on with it by `--resume`, or remove it",
                     path.display()
@@ -35,7 +40,9 @@ impl Checkpoint {
             }
             _ => None,
         };
-        check_writable(&path).map_err(|e| Failure::output(&path, e))?;
+        // What a render that was killed was writing.
+        let cleared = check_writable(&path).and_then(|()| remove_leftovers(&path));
+        cleared.map_err(|e| Failure::output(&path, e))?;
         Ok(Some((Self { path, every: args.every, failed: Cell::new(false) }, record)))
     }
 
@@ -45,8 +52,7 @@ impl Checkpoint {
         session: &Session<'_>,
         (provenance, report): (&Provenance, &Report),
     ) -> Result<(), Failure> {
-        write_film(&self.path, session.film(), &session.facts(provenance, report.seconds))
-            .map_err(|e| Failure::output(&self.path, e))
+        write_output(&self.path, session, (provenance, report))
     }
 
     /// The same while the render runs, which goes on whatever happens. Returns what to tell people, once for a row
@@ -70,20 +76,37 @@ fn is_empty(path: &Path) -> bool {
 pub fn session<'a>(
     scene: &'a Scene,
     options: RenderOptions,
-    (record, provenance): (Option<FilmRecord>, Option<&Provenance>),
+    (record, provenance): (Option<FilmRecord>, &Provenance),
 ) -> Result<Session<'a>, Failure> {
-    Ok(match record.zip(provenance) {
-        Some(film) => Session::resume(scene, options, film)?,
+    Ok(match record {
+        Some(film) => Session::resume(scene, options, (film, provenance))?,
         None => Session::new(scene, options)?,
     })
 }
 
-/// Writes a film that was asked for.
+/// Writes a film.
 pub fn write_output(
     path: &Path,
     session: &Session<'_>,
     (provenance, report): (&Provenance, &Report),
 ) -> Result<(), Failure> {
     write_film(path, session.film(), &session.facts(provenance, report.seconds))
-        .map_err(|e: FilmError| Failure::output(path, e))
+        .map_err(|e| Failure::output(path, e))
+}
+
+/// What could not be written where it was asked for is written to the folder of temporary files, so that it is not lost.
+pub fn rescue(
+    failure: Failure,
+    session: &Session<'_>,
+    (provenance, report): (&Provenance, &Report),
+) -> Failure {
+    let path = std::env::temp_dir().join(format!("caustica-{}.film", std::process::id()));
+    match (failure, write_output(&path, session, (provenance, report))) {
+        (Failure::Output(why), Ok(())) => Failure::Output(format!(
+            "{why}; the film is saved as `{}`: go on with it by `--checkpoint` and `--resume`, or make a picture of it \
+             by `caustica develop`",
+            path.display()
+        )),
+        (failure, _) => failure,
+    }
 }

@@ -37,8 +37,8 @@ fn read(path: &Path) -> Result<(Picture, Metadata), Failure> {
     let mut metadata: Metadata = facts.provenance.settings.into_iter().collect();
     metadata.set("scene", facts.provenance.scene);
     metadata.set("seconds", format!("{:.3}", facts.seconds));
-    if let Some(bars) = film.error_bars() {
-        metadata.set("noise", format!("{:.5}", bars.relative()));
+    if let Some(noise) = film.error_bars().and_then(|bars| bars.relative()) {
+        metadata.set("noise", format!("{noise:.5}"));
     }
     Ok((film.develop(), metadata))
 }

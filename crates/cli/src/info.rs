@@ -41,7 +41,7 @@ struct FilmInfo {
 fn film_info(path: &Path, console: &Console) -> Result<ExitCode, Failure> {
     let FilmRecord { film, facts } = FilmRecord::read(path).map_err(|e| Failure::input(path, e))?;
     let layout = film.layout();
-    let noise = film.error_bars().map(|bars| bars.relative());
+    let noise = film.error_bars().and_then(|bars| bars.relative());
     let resolution = [layout.width, layout.height];
     let info = FilmInfo { resolution, window: layout.window, counts: film.counts(), facts, noise };
     console.result(&info, || film_text(&info))?;

@@ -51,7 +51,7 @@ pub fn run(args: &Merge, console: &Console) -> Result<ExitCode, Failure> {
         samples: facts.samples.to_string(),
         total: facts.samples.total(),
         seconds: facts.seconds,
-        noise: sum.film.error_bars().map(|bars| bars.relative()),
+        noise: sum.film.error_bars().and_then(|bars| bars.relative()),
         output: output.display().to_string(),
     };
     console.result(&outcome, || summary(&outcome, args.films.len()))?;

@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use caustica::description::{Description, Integrator};
+use caustica::description::Integrator;
 use caustica::film::{Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::session::{Stages, content_hash, integrator_by_name, integrator_name, provenance};
@@ -13,7 +13,7 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
-use crate::outputs::{Outputs, is_film};
+use crate::outputs::Outputs;
 use crate::progress::Bar;
 use crate::{loading, prompt, replay};
 
@@ -34,34 +34,46 @@ struct Outcome<'a> {
 }
 
 pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
-    let keeps_film = args.checkpoint.file.is_some() || args.output.as_deref().is_some_and(is_film);
-    let hash = |d: &mut Description| keeps_film.then(|| content_hash(d));
-    let (opened, hash) = loading::open_with(&args.source, console, hash)?;
+    let (opened, hash) = loading::open_with(&args.source, console, content_hash)?;
     let scene = opened.scene;
     let settings = settings(&args.method, &scene, opened.integrator);
     if let Some(sample) = args.replay {
         return replay::run(&scene, settings, sample, console);
     }
     let outputs = Outputs::new(args)?;
-    let provenance = hash.map(|hash| provenance(&args.source.name(), &hash, &settings));
+    let of = provenance(&args.source.name(), &hash, &settings);
     let (checkpoint, record) = Checkpoint::open(&args.checkpoint)?.unzip();
     let options = options(args, settings, opened.samples);
-    let session = checkpoint::session(&scene, options, (record.flatten(), provenance.as_ref()))?;
+    let session = checkpoint::session(&scene, options, (record.flatten(), &of))?;
     console.warn(setting_warnings(args, &session));
     let interrupts = Interrupts::listen();
-    let kept = checkpoint.as_ref().zip(provenance.as_ref());
-    let report = run_with_bar(&session, args.noise, (&interrupts, console), kept)?;
-    let kept = kept.map_or(Ok(()), |(checkpoint, of)| checkpoint.write(&session, (of, &report)));
-    let light_image = match (&outputs, &provenance) {
-        (Outputs::Film(path), Some(of)) => {
-            checkpoint::write_output(path, &session, (of, &report))?;
-            None
+    let checkpoint = checkpoint.as_ref();
+    let report = run_with_bar(&session, args.noise, (&interrupts, console), checkpoint.map(|c| (c, &of)))?;
+    let kept = checkpoint.map_or(Ok(()), |c| c.write(&session, (&of, &report)));
+    let written = save_all(&session, (&of, &report), (args, &outputs), &interrupts);
+    // If either is there, nothing is lost.
+    let light_image = match (written, kept) {
+        (Ok(light_image), Ok(())) => light_image,
+        (Err(failure), kept) if kept.is_err() || checkpoint.is_none() => {
+            return Err(checkpoint::rescue(failure, &session, (&of, &report)));
         }
-        _ => Some(save(&session, &report, (args, &outputs), &interrupts)?),
+        (Err(failure), _) | (_, Err(failure)) => return Err(failure),
     };
-    kept?;
     tell(console, &session, &report, (&outputs, light_image))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Writes what was asked for. Tells what became of the light image, if a picture is written.
+fn save_all(
+    session: &Session<'_>,
+    what: (&Provenance, &Report),
+    (args, outputs): (&Render, &Outputs),
+    interrupts: &Interrupts,
+) -> Result<Option<LightImage>, Failure> {
+    match outputs {
+        Outputs::Film(path) => checkpoint::write_output(path, session, what).map(|()| None),
+        Outputs::Pictures { exr, png } => save(session, what.1, (args, [exr, png]), interrupts).map(Some),
+    }
 }
 
 /// What is rendered, where the scene asks for `usual` samples.
@@ -159,10 +171,9 @@ fn run_with_bar(
 fn save(
     session: &Session<'_>,
     report: &Report,
-    (args, outputs): (&Render, &Outputs),
+    (args, [exr, png]): (&Render, [&Path; 2]),
     interrupts: &Interrupts,
 ) -> Result<LightImage, Failure> {
-    let Outputs::Pictures { exr, png } = outputs else { return Ok(LightImage::On) };
     let picture = &session.film().develop();
     let mut metadata = session.metadata(report);
     metadata.set("scene", args.source.name());

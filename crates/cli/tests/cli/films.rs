@@ -60,7 +60,7 @@ fn films_that_do_not_belong_together_are_refused() {
     let merge = |other: &str| bench.run(&["merge", "a.film", other, "-o", "out.film"]);
     merge("b.film").fails(3, &["`b.film` cannot be added to `a.film`", "both hold the samples 2..3"]);
     merge("seed.film").fails(3, &["they differ in the seed (0 and 2)", "`--samples`"]);
-    merge("size.film").fails(3, &["they differ in what `scene.xml` holds"]);
+    merge("size.film").fails(3, &["they are of 24 × 16 pixels in quanta of", "and 25 × 16 pixels"]);
     merge("lamp.film").fails(3, &["they differ in what `scene.xml` holds"]);
     merge("none.film").fails(3, &["`none.film`: there is no such file"]);
     merge("scene.xml").fails(3, &["`scene.xml`: it is not a film file"]);
@@ -95,10 +95,15 @@ fn a_checkpoint_is_continued_and_never_lost_by_mistake() {
     assert_eq!(film(&bench, "c.film").facts.samples.to_string(), "0..4");
     render(&bench, &["--spp", "9", "--checkpoint", "c.film", "-o", "p"])
         .fails(4, &["the checkpoint `c.film` is there already", "--resume"]);
+    bench.write_changed("20, 18, 15", "20, 18, 16");
+    render(&bench, &["--spp", "9", "--checkpoint", "c.film", "--resume"])
+        .fails(3, &["what `scene.xml` holds changed"]);
+    bench.write("scene.xml", crate::bench::SCENE);
     for (args, words) in [
-        (&["--seed", "5"][..], "the seed (0 and 5) changed"),
-        (&["--resolution", "8x8"], "what `scene.xml` holds changed"),
-        (&["--integrator", "path"], "the integrator (bdpt and path) changed"),
+        (&["--seed", "5", "--spp", "9"][..], "the seed (0 and 5) changed"),
+        (&["--resolution", "8x8"], "the film is of 24 × 16 pixels"),
+        (&["--spp", "3"], "the film holds 4 samples per pixel already, more than 3"),
+        (&["--integrator", "path", "--spp", "9"], "the integrator (bdpt and path) changed"),
         (&["--samples", "3..9"], "holds the samples 0..4, not those from 3 on"),
     ] {
         render(&bench, &[&["--checkpoint", "c.film", "--resume", "-o", "p"], args].concat())
@@ -118,6 +123,9 @@ fn a_checkpoint_is_continued_and_never_lost_by_mistake() {
     render(&bench, &["--checkpoint", "bad.film", "--resume"]).fails(3, &["it is not a film file"]);
     render(&bench, &["--checkpoint", "none/c.film"]).fails(4, &["the folder does not exist"]);
     render(&bench, &["--resume"]).fails(2, &["--checkpoint"]);
+    render(&bench, &["--checkpoint", "p.png"]).fails(2, &["`p.png` must end in .film"]);
+    bench.write("empty.film", "");
+    render(&bench, &["--checkpoint", "empty.film", "--resume"]).ok();
     assert_eq!(bench.bytes("bad.film"), b"no film");
 }
 
@@ -153,7 +161,7 @@ fn killed_at_random_moments() {
     render(&bench, &["--spp", spp, "-o", "whole.film"]).ok();
     let args = ["render", "scene.xml", "--spp", spp, "--checkpoint", "c.film", "--every", "5ms", "--resume"];
     let args = [&args[..], &["-o", "end.film"]].concat();
-    let (mut kills, mut held) = (0u64, 0);
+    let (mut kills, mut held, mut later) = (0u64, 0, 0);
     let start = Instant::now();
     while kills < 60 {
         let mut child = bench.command(&args).spawn().unwrap();
@@ -173,12 +181,43 @@ fn killed_at_random_moments() {
         if bench.path("c.film").exists() {
             let kept = film(&bench, "c.film").facts.samples.total();
             assert!(kept >= held, "{kept} after {held}");
+            later += u32::from(kept > held);
             held = kept;
         }
         assert!(start.elapsed() < Duration::from_secs(300));
     }
+    // Most of them came after something new had been kept.
+    assert!(later >= 15, "{later} of {kills}");
     bench.run(&args).ok();
     same(&film(&bench, "end.film").film, &film(&bench, "whole.film").film);
+    // What was being written when it was killed is gone too, but for a kill while the output was written.
+    assert!(bench.made().iter().all(|n| !n.starts_with(".c.film")), "{:?}", bench.made());
+}
+
+/// A disk that is really full, where this user may make one: what was rendered is kept elsewhere.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_film_is_rescued_from_a_full_disk() {
+    let bench = Bench::new();
+    let program = env!("CARGO_BIN_EXE_caustica");
+    let script = format!(
+        "mkdir disk; mount -t tmpfs -o size=64k tmpfs disk || exit 77
+         {program} render scene.xml --spp 2 --checkpoint disk/c.film -o p -q || exit 1
+         head -c 100000 /dev/zero >disk/fill
+         TMPDIR=. {program} render scene.xml --spp 9000 --checkpoint disk/c.film --every 10ms --resume -o disk/p
+         code=$?; ls -A disk; cp disk/c.film .; exit $code"
+    );
+    let mut command = std::process::Command::new("unshare");
+    let ran = command.current_dir(bench.path("")).args(["-rm", "bash", "-c", &script]).output();
+    let Some(ran) = ran.ok().map(Ran::from).filter(|r| r.code == Some(4)) else {
+        eprintln!("no file system can be mounted here: full disks are not tested");
+        return;
+    };
+    assert!(ran.err.contains("No space left on device") || ran.err.contains("storage full"), "{}", ran.err);
+    assert_eq!(ran.out.split_whitespace().collect::<Vec<_>>(), ["c.film", "fill"]);
+    assert_eq!(film(&bench, "c.film").facts.samples.to_string(), "0..2");
+    let (_, rest) = ran.err.split_once("the film is saved as `./").unwrap();
+    assert_eq!(film(&bench, rest.split_once('`').unwrap().0).facts.samples.to_string(), "0..9000");
 }
 
 /// A disk that is full, as far as this program may write: the render goes on and says so, the checkpoint before is
@@ -192,7 +231,7 @@ fn a_full_disk_costs_no_film() {
     // Files of 1024 bytes at most; the signal that says so is ignored, and writing fails.
     let program = env!("CARGO_BIN_EXE_caustica");
     let line = format!(
-        "trap '' XFSZ; ulimit -f 1; exec {program} render scene.xml --spp 40000 --checkpoint c.film --every 10ms \
+        "trap '' XFSZ; ulimit -f 1; exec {program} render scene.xml --spp 9000 --checkpoint c.film --every 10ms \
          --resume -o p"
     );
     let mut command = std::process::Command::new("bash");
