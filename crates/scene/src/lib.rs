@@ -9,6 +9,7 @@ pub mod bvh;
 pub mod camera;
 pub mod description;
 pub mod diagnostic;
+mod figures;
 pub mod light;
 mod material;
 mod references;

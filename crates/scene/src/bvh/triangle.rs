@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use caustica_math::Vec3;
-use caustica_math::spherical::{Relative, cross, dot};
+use caustica_math::spherical::{between, cross, dot};
 
 use super::Ray;
 use super::lanes::Lanes;
@@ -65,17 +65,11 @@ fn size<L: Lanes>(v: L) -> L {
     v.max(L::splat(0.0).sub(v))
 }
 
-/// A point relative to where a ray starts.
-fn relative(p: Vec3, ray: &Ray) -> Relative {
-    [0, 1, 2].map(|axis| f64::from(p[axis]) - f64::from(ray.origin[axis]))
-}
-
 /// Where a ray meets a triangle's plane; not a number or infinite where it runs along it.
 fn plane_distance(ray: &Ray, corners: [Vec3; 3]) -> f32 {
-    let [a, b, c] = corners.map(|p| relative(p, ray));
-    let side = |p: Relative| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
-    let normal = cross(side(b), side(c));
-    (dot(normal, a) / dot(normal, ray.direction.to_array().map(f64::from))) as f32
+    let [a, b, c] = corners;
+    let normal = cross(between(a, b), between(a, c));
+    (dot(normal, between(ray.origin, a)) / dot(normal, ray.direction.to_array().map(f64::from))) as f32
 }
 
 /// The barycentric coordinates of the second and third corner where a ray meets a triangle, for triangles so thin
@@ -84,7 +78,7 @@ fn plane_distance(ray: &Ray, corners: [Vec3; 3]) -> f32 {
 #[inline(never)]
 pub(super) fn barycentrics(ray: &Ray, corners: [Vec3; 3]) -> [f32; 2] {
     let d = ray.direction.to_array().map(f64::from);
-    let [a, b, c] = corners.map(|p| relative(p, ray));
+    let [a, b, c] = corners.map(|p| between(ray.origin, p));
     let edges = [dot(d, cross(c, b)), dot(d, cross(a, c)), dot(d, cross(b, a))];
     let share = |edge: f64| (edge / (edges[0] + edges[1] + edges[2])).clamp(0.0, 1.0) as f32;
     let [v, w] = [share(edges[1]), share(edges[2])];

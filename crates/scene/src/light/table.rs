@@ -21,14 +21,14 @@ impl Lights {
     ///
     /// A small part of the choice is uniform: a lamp that is weak in all may be all the light of a place, and a
     /// probability must not vanish beside a sun's.
-    pub fn new(lights: Vec<Light>, powers: &[f32]) -> Self {
+    pub fn new(lights: Vec<Light>, powers: &[f64]) -> Self {
         let environments = (0..lights.len() as u32)
             .filter(|i| matches!(lights[*i as usize], Light::Environment(_)))
             .collect();
-        let power: f64 = powers.iter().map(|p| f64::from(*p)).sum();
-        let weight = |p: &f32| {
+        let power: f64 = powers.iter().sum();
+        let weight = |p: &f64| {
             let uniform = UNIFORM_PART / powers.len() as f64;
-            ((1.0 - UNIFORM_PART) * f64::from(*p) / power + uniform) as f32
+            ((1.0 - UNIFORM_PART) * p / power + uniform) as f32
         };
         let weights: Vec<f32> = if power > 0.0 { powers.iter().map(weight).collect() } else { Vec::new() };
         Self { choice: Distribution1d::new(&weights), lights, power, environments }
@@ -238,6 +238,6 @@ fn from_infinity(
 
 /// The power in W of a lamp at infinity that sends the irradiance-like quantity `e` through the disk around
 /// the scene.
-pub(crate) fn power_through_disk(e: f32, radius: f32) -> f32 {
-    PI * radius * radius * e
+pub(crate) fn power_through_disk(e: f64, radius: f32) -> f64 {
+    f64::from(PI) * f64::from(radius) * f64::from(radius) * e
 }
