@@ -235,10 +235,10 @@ fn textures_out_of_range() {
 
 #[test]
 fn cameras_at_the_ends_of_the_range() {
-    for fov in [1e-30, 1e-10, 179.99999, 180.0_f32.next_down()] {
+    for fov in [1e-30, 1e-10] {
         refused("too near to 0 or 180", |d| d.camera.kind = CameraKind::Perspective { fov });
     }
-    for fov in [1e-3, 179.9] {
+    for fov in [1e-3, 179.9, 180.0_f32.next_down()] {
         let (scene, _) = made(|d| d.camera.kind = CameraKind::Perspective { fov });
         for film in [Vec2::new(2.0, 2.0), Vec2::default()] {
             let ray = scene.camera.ray(film, [0.5; 2]);
