@@ -190,6 +190,10 @@ impl Sink for PyramidSink<'_, '_, '_> {
         }
     }
 
+    fn invalid(&mut self) {
+        self.pyramid.whole.add_eye(self.pixel, Rgb::splat(f32::NAN));
+    }
+
     fn contribution(&mut self, c: &Contribution<'_>) {
         let layer = self.pyramid.layer(c.strategy);
         let unweighted = c.unweighted * c.filter_weight;

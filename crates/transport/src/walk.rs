@@ -39,6 +39,17 @@ pub(crate) struct Subpath {
     pub origin_reverse: f32,
     /// Whether a camera walk left the scene, and how.
     pub escape: Option<Escape>,
+    /// Whether a numerical failure ended the walk.
+    pub failed: bool,
+}
+
+impl Subpath {
+    /// Makes room for another walk.
+    pub(crate) fn clear(&mut self) {
+        self.vertices.clear();
+        self.escape = None;
+        self.failed = false;
+    }
 }
 
 /// A camera walk that left the scene: a vertex at infinity.
@@ -81,8 +92,7 @@ impl Kernel<'_> {
         numbers: &mut impl Bounces,
         path: &mut Subpath,
     ) {
-        path.vertices.clear();
-        path.escape = None;
+        path.clear();
         let walk = start.walk();
         // A light path still needs an edge to the camera.
         let max_edges = self.max_edges - usize::from(walk == Walk::FromLight);
@@ -99,10 +109,21 @@ impl Kernel<'_> {
                 Some(from) => Edge::finite(point.position.distance_squared(from)),
                 None => Edge::INFINITE,
             };
-            vertex.forward = flight.pdf * edge.jacobian(vertex.cos(vertex.prev));
+            let cos = vertex.cos(vertex.prev);
+            vertex.forward = flight.pdf * edge.jacobian(cos);
             vertex.back = edge.jacobian(flight.cos);
             vertex.throughput = flight.throughput;
-            if !(vertex.forward > 0.0 && vertex.forward.is_finite() && vertex.back.is_finite()) {
+            // Surfaces seen edge-on are never found; a density that is lost otherwise is a failure.
+            let found = vertex.forward > 0.0 || cos == 0.0;
+            if !(found
+                && vertex.forward.is_finite()
+                && vertex.back.is_finite()
+                && vertex.throughput.is_valid())
+            {
+                path.failed = true;
+                return;
+            }
+            if cos == 0.0 {
                 return;
             }
             vertex.sums = match path.vertices.last() {
@@ -131,6 +152,10 @@ impl Kernel<'_> {
         let Some((direction, scatter, delta)) = vertex.sample(walk, bounce.u) else { return false };
         vertex.delta = delta;
         flight.throughput *= scatter.value * (1.0 / scatter.forward.0);
+        if !flight.throughput.is_valid() {
+            path.failed = true;
+            return false;
+        }
         flight.pdf = scatter.forward.0;
         flight.from = Some(vertex.point.position);
         flight.cos = vertex.cos(direction);
@@ -205,7 +230,6 @@ impl Kernel<'_> {
 #[inline]
 fn survives(flight: &mut Flight, first_throughput: f32, u: f32) -> bool {
     let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
-    // A NaN stays, fails the comparison and ends the walk.
     let survival = if left > MAX_SURVIVAL { MAX_SURVIVAL } else { left };
     flight.throughput *= 1.0 / survival;
     u < survival

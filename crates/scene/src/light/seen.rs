@@ -49,7 +49,8 @@ impl<S> Near<S> {
     pub fn area_pdf(&self, from: Vec3, point: &LightPoint) -> AreaPdf {
         let squared = point.at.distance_squared(from);
         let pdf = self.height / squared.sqrt() / (squared * self.solid_angle);
-        AreaPdf(if pdf.is_finite() { pdf } else { 0.0 })
+        // At the place itself nothing is found.
+        AreaPdf(if squared > 0.0 { pdf } else { 0.0 })
     }
 }
 

@@ -127,8 +127,9 @@ impl LightQuery<'_> {
             }
         };
         emission.pdf.point = emission.pdf.point * chosen.mass;
-        let valid = emission.pdf.point.0 > 0.0 && emission.pdf.direction.0 > 0.0;
-        (valid && !emission.radiance.is_black()).then_some(emission)
+        // What is no number goes on, and is found and counted where it would have been added.
+        let none = emission.pdf.point.0 <= 0.0 || emission.pdf.direction.0 <= 0.0;
+        (!none && !emission.radiance.is_black()).then_some(emission)
     }
 
     /// The densities with which [`LightQuery::sample_emission`] begins at `point` in `direction`.
@@ -165,14 +166,9 @@ impl LightQuery<'_> {
         let (direction, distance) = point.direction_from(from);
         let radiance = self.radiance(&point, -direction);
         let pdf = pdf * chosen.mass;
-        // A place on the lamp itself has no direction to it.
-        (pdf.0 > 0.0 && distance > 0.0 && !radiance.is_black()).then_some(Towards {
-            point,
-            direction,
-            distance,
-            radiance,
-            pdf,
-        })
+        // A place on the lamp itself has no direction to it. What is no number goes on, to be counted.
+        let none = pdf.0 <= 0.0 || distance <= 0.0;
+        (!none && !radiance.is_black()).then_some(Towards { point, direction, distance, radiance, pdf })
     }
 
     /// The density with which [`LightQuery::sample_towards`] finds `point` from `from`.
