@@ -118,8 +118,9 @@ fn connections() {
 #[test]
 fn splats() {
     let mut d = floor();
+    look(&mut d, [0.0, 0.3, 0.0], [0.0, 0.0, 0.0003]);
     d.camera.kind = CameraKind::Perspective { fov: 0.1 };
-    let (position, direction, intensity) = ([0.0, 0.5, 0.0], [0.0, -1.0, 0.0], Rgb::splat(1e36));
+    let (position, direction, intensity) = ([0.0, 0.5, 0.0], [0.0, -1.0, 0.0], Rgb::splat(3e38));
     build::light(
         &mut d,
         LightKind::Spot { position, direction, intensity, inner_angle: 0.1, outer_angle: 0.1 },
