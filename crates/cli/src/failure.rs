@@ -2,7 +2,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use caustica::film::FilmError;
-use caustica::scene::Diagnostic;
+use caustica::scene::{Cause, Diagnostic};
 use caustica::session::RenderError;
 
 /// Why the program ends without what it was asked for. Each kind has an exit code.
@@ -50,6 +50,7 @@ impl Failure {
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
+            Self::Input(d) if d.cause == Cause::Memory => 5,
             Self::Input(_) => 3,
             Self::Output(_) => 4,
             Self::Machine(_) => 5,

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
 
 use caustica_math::filter::PixelFilter;
 use caustica_math::stream::mix64;
-use caustica_math::{Rgb, Vec2};
+use caustica_math::{MemoryLimit, Rgb, Vec2};
 use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
@@ -314,16 +314,7 @@ impl Film {
 /// Whether the machine has the memory for a film of that many pixels, and for developing it. Asking for it
 /// does not tell: systems promise more than they have, and end the program when it is used.
 fn fits_memory(pixels: u64) -> bool {
-    let needed = pixels.saturating_mul(2 * size_of::<Sums>() as u64);
-    available_memory().is_none_or(|available| needed <= available)
-}
-
-/// The memory that new work can have, in bytes, where the system tells (Linux).
-pub fn available_memory() -> Option<u64> {
-    let table = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = table.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kibibytes.checked_mul(1024)
+    MemoryLimit::Machine.check(pixels.saturating_mul(2 * size_of::<Sums>() as u64)).is_ok()
 }
 
 #[inline]

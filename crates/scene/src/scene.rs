@@ -1,13 +1,12 @@
 //! The flat scene: what rays run on.
 
-use caustica_math::{Frame, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
+use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, shears};
 use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
 use crate::diagnostic::Diagnostic;
-use crate::figures;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
     SpotLight, Surroundings, power_through_disk,
@@ -16,6 +15,7 @@ use crate::material::bsdf_at;
 use crate::references;
 use crate::surface::{SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
+use crate::{figures, memory};
 
 /// A scene ready to be rendered. Immutable, and shared between threads.
 #[derive(Debug)]
@@ -49,11 +49,24 @@ impl Scene {
     /// # Errors
     /// As [`Scene::new`].
     pub fn with_tree(
+        description: Description,
+        tree: TreeQuality,
+    ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
+        Self::within(description, tree, MemoryLimit::Machine)
+    }
+
+    /// The same in so much memory.
+    ///
+    /// # Errors
+    /// As [`Scene::new`]; and, before anything is allocated, a scene that does not fit: see [`memory::needed`].
+    pub fn within(
         mut description: Description,
         tree: TreeQuality,
+        memory: MemoryLimit,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
         let film = description.film.clone();
+        memory::check(&description, tree, memory)?;
         references::check(&description)?;
         figures::check(&description)?;
         let camera = Camera::new(&description.camera, &film)?;

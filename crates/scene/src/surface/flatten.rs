@@ -21,6 +21,7 @@ impl Surfaces {
     /// that is scaled unevenly, a radius that is not positive, more than 2²⁷ primitives.
     pub fn new(shapes: &mut [Shape], warnings: &mut Vec<Diagnostic>) -> Result<Self, Diagnostic> {
         let mut surfaces = Self::default();
+        surfaces.reserve(shapes);
         for (index, shape) in shapes.iter_mut().enumerate() {
             if !shape.to_world.is_invertible() {
                 return Err(shape_error(shape, "has a transform that cannot be inverted"));
@@ -49,6 +50,22 @@ impl Surfaces {
             )));
         }
         Ok(surfaces)
+    }
+
+    /// Makes room for all meshes at once: tables that grow take twice as much, and three times while they do.
+    fn reserve(&mut self, shapes: &[Shape]) {
+        let meshes = || {
+            shapes.iter().filter_map(|s| match &s.geometry {
+                Geometry::Mesh(m) => Some(m),
+                Geometry::Sphere { .. } => None,
+            })
+        };
+        self.positions.reserve_exact(meshes().map(|m| m.positions.len()).sum());
+        self.normals.reserve_exact(meshes().map(|m| m.normals.len()).sum());
+        self.uvs.reserve_exact(meshes().map(|m| m.uvs.len()).sum());
+        let triangles = meshes().map(|m| m.triangles.len()).sum();
+        self.triangles.reserve_exact(triangles);
+        self.triangle_shapes.reserve_exact(triangles);
     }
 
     fn empty_shape(&self, shape: &Shape) -> FlatShape {
