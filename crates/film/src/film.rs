@@ -68,11 +68,8 @@ impl Film {
     pub fn new(layout: FilmLayout) -> Result<Self, FilmError> {
         layout.check()?;
         let window = layout.window;
-        let too_large = || FilmError::TooLarge {
-            width: window.width,
-            height: window.height,
-            megabytes: (window.pixels() * size_of::<Sums>() as u64).div_ceil(1_000_000),
-        };
+        let bytes = window.pixels() * size_of::<Sums>() as u64;
+        let too_large = || FilmError::too_large(window.width, window.height, bytes);
         let count = match usize::try_from(window.pixels()) {
             Ok(count) if window.pixels() <= MOST_PIXELS && fits_memory(window.pixels()) => count,
             _ => return Err(too_large()),

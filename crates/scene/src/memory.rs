@@ -9,7 +9,7 @@ use crate::light::Light;
 
 /// Bytes a primitive that the tree takes when it is done, and while it is built.
 const TREE: u64 = 62;
-const TREE_WHILE_BUILT: u64 = 175;
+const TREE_WHILE_BUILT: u64 = 100;
 
 /// Bytes of an edge while borders are looked for.
 const EDGE: u64 = 28;

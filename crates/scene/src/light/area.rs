@@ -6,6 +6,7 @@ use caustica_math::{AreaPdf, Distribution1d, Frame, Spectrum, Vec2, Vec3, warp};
 
 use super::quad::Quad;
 use super::seen::{Reach, Seen};
+use super::table::LEAST_SHARE;
 use super::{Anchor, Emission, EmissionPdf, LightPoint, Surroundings};
 use crate::bvh::SphereData;
 use crate::description::Texture;
@@ -69,7 +70,7 @@ impl AreaLight {
         let mean = (power / total_area) as f32;
         let floor = (UNIFORM_PART * mean).max(least);
         let all = total_area * f64::from(mean + floor);
-        let weight = |(a, m): (&f64, &f32)| (a * f64::from(m + floor) / all) as f32;
+        let weight = |(a, m): (&f64, &f32)| ((a * f64::from(m + floor) / all) as f32).max(LEAST_SHARE);
         let weights: Vec<f32> = areas.iter().zip(&means).map(weight).collect();
         let choice = Distribution1d::new(&weights)?;
         let density: Vec<f32> =

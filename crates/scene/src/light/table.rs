@@ -7,6 +7,10 @@ use super::{Anchor, Emission, EmissionPdf, Light, LightPoint, Surroundings, Towa
 /// The part of the choice among lamps that is uniform.
 const UNIFORM_PART: f64 = 0.1;
 
+/// No lamp, and no triangle of one, gets a smaller share of a choice: of eight million at most, each can then be told
+/// from its neighbours by the 24 bits of a number in [0, 1), and none is lost.
+pub(super) const LEAST_SHARE: f32 = 1.0 / (1 << 23) as f32;
+
 /// All lamps of a scene, chosen by power.
 #[derive(Debug)]
 pub struct Lights {
@@ -28,7 +32,7 @@ impl Lights {
         let power: f64 = powers.iter().sum();
         let weight = |p: &f64| {
             let uniform = UNIFORM_PART / powers.len() as f64;
-            ((1.0 - UNIFORM_PART) * p / power + uniform) as f32
+            ((1.0 - UNIFORM_PART) * p / power + uniform).max(f64::from(LEAST_SHARE)) as f32
         };
         let weights: Vec<f32> = if power > 0.0 { powers.iter().map(weight).collect() } else { Vec::new() };
         Self { choice: Distribution1d::new(&weights), lights, power, environments }
