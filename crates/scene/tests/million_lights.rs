@@ -103,7 +103,7 @@ fn a_hundred_thousand_spheres_and_quads_that_emit() {
             build::sphere(&mut d, [x, 0.5, z], 1e-3, caustica_scene::description::MaterialId(0))
         } else {
             let m = caustica_scene::description::MaterialId(0);
-            build::quad(&mut d, [x, 1.0, z], [1e-2, 0.0, 0.0], [0.0, 0.0, 1e-2], m)
+            build::quad(&mut d, [x, 1.0 + i as f32 * 1e-5, z], [1e-2, 0.0, 0.0], [0.0, 0.0, 1e-2], m)
         };
         build::emit(&mut d, lamp, 1.0);
     }

@@ -183,25 +183,24 @@ impl Kernel<'_> {
     /// The sums of a walk's first surface vertex.
     #[inline]
     fn first_sums(&self, start: &Start<'_>, vertex: &Vertex) -> RunningSums {
-        let h = self.heuristic;
-        let inverse = 1.0 / h.of(vertex.forward);
+        let inverse = 1.0 / vertex.forward;
         match start {
             // One vertex less is t = 1, which every light path tries.
             Start::Camera if self.classes.splat => {
-                RunningSums { recent: h.of(self.light_paths) * inverse, past: 0.0 }
+                RunningSums { recent: self.light_paths * inverse, past: 0.0 }
             }
             Start::Camera => RunningSums::default(),
             Start::Light(emission) => {
                 let lights = self.scene.lights(self.wavelengths);
-                let emitted = 1.0 / h.of(emission.pdf.point.0);
+                let emitted = 1.0 / emission.pdf.point.0;
                 let mut sums = RunningSums::default();
                 if self.classes.next_event {
                     // One vertex less is s = 1, which finds the lamp by another density.
                     let found = lights.towards_pdf(vertex.point.position, &emission.point);
-                    sums.recent = h.of(found.0) * emitted * inverse;
+                    sums.recent = found.0 * emitted * inverse;
                 }
                 if self.classes.hit && !lights.lights.get(emission.point.light).is_delta() {
-                    sums.past = h.of(vertex.back) * emitted * inverse;
+                    sums.past = vertex.back * emitted * inverse;
                 }
                 sums
             }
@@ -215,8 +214,7 @@ impl Kernel<'_> {
             (Some(previous), _) => self.step(previous.sums, flight, forward, back),
             // Seen directly: one vertex less is t = 1.
             (None, Some(_)) if self.classes.splat => {
-                let h = self.heuristic;
-                RunningSums { recent: h.of(self.light_paths / forward), past: 0.0 }
+                RunningSums { recent: self.light_paths / forward, past: 0.0 }
             }
             // A parallel projection sees one direction only; no light path can be joined with it there.
             (None, _) => RunningSums::default(),
