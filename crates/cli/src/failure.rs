@@ -81,3 +81,15 @@ fn reason(e: &FilmError, not_found: &str) -> String {
         _ => e.to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_the_machine_s_failure() {
+        let error = Diagnostic::error("the scene needs 9 MB of memory, and 8 MB are there");
+        assert_eq!(Failure::from(error.clone()).code(), 3);
+        assert_eq!(Failure::from(Diagnostic { cause: Cause::Memory, ..error }).code(), 5);
+    }
+}
