@@ -137,7 +137,7 @@ fn slivers_keep_their_normals() {
 /// What a density could not be counted on is left out; what is tiny otherwise stays.
 #[test]
 fn tiny_triangles() {
-    let scaled = |k: f32| move |d: &mut Description| mesh(d).positions.iter_mut().for_each(|p| *p = *p * k);
+    let scaled = |k: f32| move |d: &mut Description| mesh(d).positions.iter_mut().for_each(|p| *p *= k);
     for k in [1e-6, 1e-12, 1e-15] {
         let (scene, _) = made(scaled(k));
         assert_eq!(scene.surfaces().triangles().len(), 2, "{k}");
@@ -334,7 +334,7 @@ fn the_brightest_lamps_have_a_power() {
     for radiance in [1e-30, 1e30, 3e38] {
         let (scene, _) = made(|d| {
             d.lights.clear();
-            mesh(d).positions.iter_mut().for_each(|p| *p = *p * 1e6);
+            mesh(d).positions.iter_mut().for_each(|p| *p *= 1e6);
             d.camera.far = 1e9;
             build::emit(d, 0, radiance);
         });
