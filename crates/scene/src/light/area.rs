@@ -70,6 +70,9 @@ impl AreaLight {
         let mean = (power / total_area) as f32;
         let floor = (UNIFORM_PART * mean).max(least);
         let all = total_area * f64::from(mean + floor);
+        if all <= 0.0 {
+            return None;
+        }
         let weight = |(a, m): (&f64, &f32)| ((a * f64::from(m + floor) / all) as f32).max(LEAST_SHARE);
         let weights: Vec<f32> = areas.iter().zip(&means).map(weight).collect();
         let choice = Distribution1d::new(&weights)?;
