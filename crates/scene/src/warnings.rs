@@ -78,7 +78,7 @@ fn lamps_that_face_away(scene: &Scene, description: &Description, warnings: &mut
     for (index, shape) in lamps.take(MOST_LAMPS) {
         let (what, hint) = if scene.lies_in_another(index) {
             (
-                "lies in the plane of another surface, which of them is seen is left to rounding",
+                "lies in the plane of another surface: which of them is seen is left to rounding",
                 "move it a little in front of the surface",
             )
         } else if scene.faces_nothing(index) {
