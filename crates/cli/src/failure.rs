@@ -2,7 +2,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use caustica::film::FilmError;
-use caustica::scene::Diagnostic;
+use caustica::scene::{Cause, Diagnostic};
 use caustica::session::RenderError;
 
 /// Why the program ends without what it was asked for. Each kind has an exit code.
@@ -55,6 +55,7 @@ impl Failure {
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage(_) => 2,
+            Self::Input(d) if d.cause == Cause::Memory => 5,
             Self::Input(_) => 3,
             Self::Output(_) => 4,
             Self::Machine(_) => 5,
@@ -83,5 +84,17 @@ fn reason(e: &FilmError, not_found: &str) -> String {
         },
         FilmError::Format { message, .. } => message.clone(),
         _ => e.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_the_machine_s_failure() {
+        let error = Diagnostic::error("the scene needs 9 MB of memory, and 8 MB are there");
+        assert_eq!(Failure::from(error.clone()).code(), 3);
+        assert_eq!(Failure::from(Diagnostic { cause: Cause::Memory, ..error }).code(), 5);
     }
 }

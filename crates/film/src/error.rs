@@ -16,7 +16,7 @@ pub enum FilmError {
     },
     /// The memory for a film cannot be had.
     #[error(
-        "a film of {width} × {height} pixels needs {megabytes} MB of memory, more than there is; a crop needs less"
+        "a film of {width} × {height} pixels needs {megabytes} MB of memory, more than there is{}; a crop needs less", there(*available)
     )]
     TooLarge {
         /// Width of the window.
@@ -25,6 +25,8 @@ pub enum FilmError {
         height: u32,
         /// Memory that the film needs, in millions of bytes.
         megabytes: u64,
+        /// Memory that is there, in millions of bytes, where that is known.
+        available: Option<u64>,
     },
     /// Sizes that make no film, or that do not fit together.
     #[error("{0}")]
@@ -52,7 +54,18 @@ pub enum FilmError {
     },
 }
 
+/// " (… MB)", if it is known.
+fn there(available: Option<u64>) -> String {
+    available.map_or_else(String::new, |megabytes| format!(" ({megabytes} MB)"))
+}
+
 impl FilmError {
+    /// A film of such a window that needs so many bytes.
+    pub fn too_large(width: u32, height: u32, bytes: u64) -> Self {
+        let available = caustica_math::memory::available().map(|bytes| bytes / 1_000_000);
+        Self::TooLarge { width, height, megabytes: bytes.div_ceil(1_000_000), available }
+    }
+
     pub(crate) fn io(path: &Path, source: io::Error) -> Self {
         Self::Io { path: path.to_owned(), source }
     }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicI64, AtomicU64, Ordering::Relaxed};
 
 use caustica_math::filter::PixelFilter;
 use caustica_math::stream::mix64;
-use caustica_math::{Rgb, Vec2};
+use caustica_math::{MemoryLimit, Rgb, Vec2};
 use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
@@ -354,22 +354,13 @@ pub(crate) fn combine(hash: u64, word: u64) -> u64 {
 /// `films` films of that window need more memory than there is.
 fn too_large(window: Window, films: u64) -> FilmError {
     let bytes = window.pixels().saturating_mul(films * size_of::<Sums>() as u64);
-    FilmError::TooLarge { width: window.width, height: window.height, megabytes: bytes.div_ceil(1_000_000) }
+    FilmError::too_large(window.width, window.height, bytes)
 }
 
 /// Whether the machine has the memory for a film of that many pixels, and for developing it. Asking for it
 /// does not tell: systems promise more than they have, and end the program when it is used.
 fn fits_memory(pixels: u64) -> bool {
-    let needed = pixels.saturating_mul(2 * size_of::<Sums>() as u64);
-    available_memory().is_none_or(|available| needed <= available)
-}
-
-/// The memory that new work can have, in bytes, where the system tells (Linux).
-pub fn available_memory() -> Option<u64> {
-    let table = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = table.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kibibytes.checked_mul(1024)
+    MemoryLimit::Machine.check(pixels.saturating_mul(2 * size_of::<Sums>() as u64)).is_ok()
 }
 
 #[inline]

@@ -18,11 +18,12 @@ mod quantum;
 mod record;
 mod tonemap;
 
+pub use caustica_math::memory::available as available_memory;
 pub use display::{Develop, write_png, write_srgb_png};
 pub use dual::{DualFilm, half_of};
 pub use error::FilmError;
 pub use error_bars::ErrorBars;
-pub use film::{Film, FilmCounts, LightBuffer, available_memory};
+pub use film::{Film, FilmCounts, LightBuffer};
 pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr, write_layers};
 pub use output::{check_writable, remove_leftovers, write_atomically, write_file};

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
+use caustica_scene::MemoryLimit;
+
 /// Where the files lie that a scene names.
 #[derive(Clone, Copy)]
 pub(crate) struct Folder<'a> {
@@ -11,6 +13,8 @@ pub(crate) struct Folder<'a> {
     pub(crate) base: &'a Path,
     /// Meshes that come with the program, by name; they hide files.
     pub(crate) embedded: &'a [(&'a str, &'a str)],
+    /// What all that is read may take.
+    pub(crate) memory: MemoryLimit,
 }
 
 impl<'a> Folder<'a> {

@@ -12,13 +12,13 @@ mod suggest;
 
 use std::path::Path;
 
-use caustica_scene::{Description, Diagnostic};
+use caustica_scene::{Description, Diagnostic, MemoryLimit};
 
 use files::Folder;
 
-pub use image::{ReadImage, read_image};
+pub use image::{ReadImage, read_image, read_image_within};
 pub use nori::{SceneTest, TestKind};
-pub use obj::{ObjMesh, load_obj, read_obj};
+pub use obj::{ObjMesh, load_obj, load_obj_within, read_obj};
 
 /// What a scene file holds.
 #[derive(Clone, Debug)]
@@ -36,6 +36,12 @@ const LARGEST_SCENE_FILE: u64 = 64 << 20;
 
 /// Reads a scene file and all files that it names.
 pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
+    load_within(path, MemoryLimit::Machine)
+}
+
+/// The same in so much memory: images and meshes that take more are refused, images before they are decoded and
+/// meshes while they are read.
+pub fn load_within(path: &Path, memory: MemoryLimit) -> Result<Loaded, Diagnostic> {
     let name = path.display().to_string();
     let bytes = files::read(path, LARGEST_SCENE_FILE)
         .map_err(|why| Diagnostic::error(format!("cannot read the scene `{name}`: {why}")))?;
@@ -51,18 +57,18 @@ pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
                 .hint("save the file with the encoding UTF-8"));
         }
     };
-    parse_nori(text, &name, path.parent().unwrap_or(Path::new("")))
+    parse(text, &name, Folder { base: path.parent().unwrap_or(Path::new("")), embedded: &[], memory })
 }
 
 /// Reads a scene from the text of a Nori scene file. `file_name` is for messages; relative paths start
 /// at `base_dir`.
 pub fn parse_nori(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded, Diagnostic> {
-    parse(text, file_name, Folder { base: base_dir, embedded: &[] })
+    parse(text, file_name, Folder { base: base_dir, embedded: &[], memory: MemoryLimit::Machine })
 }
 
 /// Reads a scene that comes with the program: its text, and its meshes as (name, OBJ text).
 pub fn parse_embedded(text: &str, file_name: &str, meshes: &[(&str, &str)]) -> Result<Loaded, Diagnostic> {
-    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes })
+    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes, memory: MemoryLimit::Machine })
 }
 
 fn parse(text: &str, file_name: &str, folder: Folder<'_>) -> Result<Loaded, Diagnostic> {

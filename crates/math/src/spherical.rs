@@ -5,6 +5,7 @@
 //! differences of large terms. Sines and angles are `f32`; their error moves a point as another random number
 //! would, and no further.
 
+use crate::Vec3;
 use crate::elementary::{sin_cos_turns, upper_angle};
 
 /// Turns of one radian.
@@ -23,6 +24,12 @@ pub fn dot(a: Relative, b: Relative) -> f64 {
 #[inline]
 pub fn cross(a: Relative, b: Relative) -> Relative {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// From one place to another.
+#[inline]
+pub fn between(from: Vec3, to: Vec3) -> Relative {
+    [0, 1, 2].map(|axis| f64::from(to[axis]) - f64::from(from[axis]))
 }
 
 /// Sine and cosine of `radians` in [0, 2π], such that their squares add up to one in all digits of an `f64`.

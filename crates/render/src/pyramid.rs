@@ -59,7 +59,7 @@ impl<'a> Pyramid<'a> {
         let needed = layout.window.pixels().saturating_mul(2 * BYTES * (strategies + 1));
         if available_memory().is_some_and(|available| needed > available) {
             let Window { width, height, .. } = layout.window;
-            return Err(FilmError::TooLarge { width, height, megabytes: needed.div_ceil(1_000_000) }.into());
+            return Err(FilmError::too_large(width, height, needed).into());
         }
         let layers = (1..=edges)
             .flat_map(|k| (0..=k).map(move |s| Strategy { s, t: k + 1 - s }))
@@ -188,6 +188,10 @@ impl Sink for PyramidSink<'_, '_, '_> {
         if let Some(layer) = layer {
             layer.unweighted.splat_light(filter, film, unweighted);
         }
+    }
+
+    fn invalid(&mut self) {
+        self.pyramid.whole.add_eye(self.pixel, Rgb::splat(f32::NAN));
     }
 
     fn contribution(&mut self, c: &Contribution<'_>) {

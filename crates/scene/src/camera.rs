@@ -12,6 +12,7 @@ use caustica_math::{SolidAnglePdf, Vec2, Vec3, warp};
 
 use crate::description::{self, CameraKind, FilmSettings};
 use crate::diagnostic::Diagnostic;
+use crate::surface::{FARTHEST, is_reachable, unreachable};
 
 /// A camera in world space.
 #[derive(Clone, Debug)]
@@ -90,6 +91,10 @@ impl Camera {
         if !camera.to_world.is_invertible() {
             return Err(error("the camera's transform cannot be inverted"));
         }
+        let origin = camera.to_world.point(Vec3::ZERO);
+        if !is_reachable(origin) {
+            return Err(error(&format!("the camera's position is {}", unreachable(origin))));
+        }
         if !(camera.near >= 0.0 && camera.far > camera.near) {
             return Err(error("the camera's far clip must lie beyond its near clip, and both be positive"));
         }
@@ -102,30 +107,23 @@ impl Camera {
             return Err(error("the camera's transform shears space: its axes must be at right angles"));
         }
         let width = film.width as f32;
-        let lens = |fov: f32, radius: f32, focus: f32| {
-            let valid = fov > 0.0 && fov < 180.0 && radius >= 0.0 && radius.is_finite() && focus > 0.0;
-            let pixel = 2.0 * tan(0.5 * fov.to_radians()) / width;
-            if valid && focus.is_finite() {
-                Ok(Projection::Lens { pixel, radius, focus })
-            } else {
-                Err(error(
-                    "the camera's field of view must lie between 0 and 180 degrees, its lens radius be zero or more and its focus distance positive",
-                ))
-            }
-        };
         let projection = match camera.kind {
-            CameraKind::Perspective { fov } => lens(fov, 0.0, 1.0)?,
+            CameraKind::Perspective { fov } => lens(fov, (0.0, 1.0), film).map_err(|m| error(&m))?,
             CameraKind::ThinLens { fov, aperture_radius, focus_distance } => {
-                lens(fov, aperture_radius, focus_distance)?
+                lens(fov, (aperture_radius, focus_distance), film).map_err(|m| error(&m))?
             }
             CameraKind::Orthographic => {
-                Projection::Orthographic { pixel: 2.0 * column(Vec3::X).length() / width }
+                let pixel = 2.0 * column(Vec3::X).length() / width;
+                let message = "the camera's transform scales so much that its pixels have no size";
+                is_resolved(pixel, 1.0)
+                    .then_some(Projection::Orthographic { pixel })
+                    .ok_or_else(|| error(message))?
             }
             CameraKind::Environment => Projection::Environment,
         };
         Ok(Self {
             projection,
-            origin: camera.to_world.point(Vec3::ZERO),
+            origin,
             axes,
             width,
             height: film.height as f32,
@@ -336,10 +334,43 @@ impl Camera {
         self.axes[2]
     }
 
+    /// The near and the far clip plane.
+    pub fn clips(&self) -> (f32, f32) {
+        (self.near, self.far)
+    }
+
     /// Where the camera is.
     pub fn position(&self) -> Vec3 {
         self.origin
     }
+}
+
+/// Pixels that cover a smaller angle could not be told apart by directions in single precision.
+const SHARPEST: f32 = 1e-8;
+
+/// A lens of that field of view, radius and focus distance.
+fn lens(fov: f32, (radius, focus): (f32, f32), film: &FilmSettings) -> Result<Projection, String> {
+    let valid = fov > 0.0 && fov < 180.0 && (0.0..=FARTHEST).contains(&radius);
+    if !(valid && (1.0 / FARTHEST..=FARTHEST).contains(&focus)) {
+        return Err(format!(
+            "the camera's field of view must lie between 0 and 180 degrees, its lens radius be zero or more and its focus distance positive, and neither beyond {FARTHEST:e}"
+        ));
+    }
+    let pixel = 2.0 * tan(0.5 * fov.to_radians()) / film.width as f32;
+    // At the picture's corners pixels are seen at the greatest angle.
+    let (x, y) = (0.5 * pixel * film.width as f32, 0.5 * pixel * film.height as f32);
+    let cos = 1.0 / (1.0 + x * x + y * y).sqrt();
+    if pixel >= SHARPEST && is_resolved(pixel, cos) {
+        Ok(Projection::Lens { pixel, radius, focus })
+    } else {
+        Err(format!("the camera's field of view of {fov} degrees is too near to 0 or 180 to be rendered"))
+    }
+}
+
+/// Whether the density of a pixel of that size, seen at that cosine, can be counted with.
+fn is_resolved(pixel: f32, cos: f32) -> bool {
+    let density = lens_pdf(cos, pixel).0;
+    pixel > 0.0 && (1e-30..=1e30).contains(&density)
 }
 
 /// Whether three unit vectors are not at right angles.

@@ -34,6 +34,23 @@ pub enum Severity {
     Error,
 }
 
+/// What it lies in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Cause {
+    /// What the scene says.
+    #[default]
+    Scene,
+    /// The machine has not enough memory for it.
+    Memory,
+}
+
+impl Cause {
+    fn is_scene(&self) -> bool {
+        *self == Self::Scene
+    }
+}
+
 /// An error or a warning, with its place and a hint where there are any.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
@@ -45,12 +62,21 @@ pub struct Diagnostic {
     pub origin: Option<Origin>,
     /// What to do about it.
     pub hint: Option<String>,
+    /// What it lies in.
+    #[serde(default, skip_serializing_if = "Cause::is_scene")]
+    pub cause: Cause,
 }
 
 impl Diagnostic {
     /// An error without place or hint.
     pub fn error(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, message: message.into(), origin: None, hint: None }
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+            origin: None,
+            hint: None,
+            cause: Cause::Scene,
+        }
     }
 
     /// A warning without place or hint.

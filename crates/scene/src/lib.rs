@@ -9,14 +9,17 @@ pub mod bvh;
 pub mod camera;
 pub mod description;
 pub mod diagnostic;
+mod figures;
 pub mod light;
 mod material;
+pub mod memory;
 mod references;
 pub mod scene;
 pub mod surface;
 pub mod texture;
 mod warnings;
 
+pub use caustica_math::MemoryLimit;
 pub use description::Description;
-pub use diagnostic::{Diagnostic, Origin, Severity};
+pub use diagnostic::{Cause, Diagnostic, Origin, Severity};
 pub use scene::Scene;

@@ -1,6 +1,6 @@
 //! The flat scene: what rays run on.
 
-use caustica_math::{Frame, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
+use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
@@ -13,8 +13,9 @@ use crate::light::{
 };
 use crate::material::bsdf_at;
 use crate::references;
-use crate::surface::{SurfacePoint, Surfaces};
+use crate::surface::{SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
+use crate::{figures, memory};
 
 /// A scene ready to be rendered. Immutable, and shared between threads.
 #[derive(Debug)]
@@ -48,13 +49,27 @@ impl Scene {
     /// # Errors
     /// As [`Scene::new`].
     pub fn with_tree(
+        description: Description,
+        tree: TreeQuality,
+    ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
+        Self::within(description, tree, MemoryLimit::Machine)
+    }
+
+    /// The same in so much memory.
+    ///
+    /// # Errors
+    /// As [`Scene::new`]; and, before anything is allocated, a scene that does not fit: see [`memory::needed`].
+    pub fn within(
         mut description: Description,
         tree: TreeQuality,
+        memory: MemoryLimit,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
         let film = description.film.clone();
-        let camera = Camera::new(&description.camera, &film)?;
+        memory::check(&description, tree, memory)?;
         references::check(&description)?;
+        figures::check(&description)?;
+        let camera = Camera::new(&description.camera, &film)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = &description.materials[shape.material.0 as usize].kind;
@@ -123,17 +138,13 @@ impl Scene {
     }
 
     /// The lamp and its power.
-    fn flatten_light(&self, kind: &LightKind, w: Wavelengths) -> Result<Option<(Light, f32)>, &'static str> {
+    fn flatten_light(&self, kind: &LightKind, w: Wavelengths) -> Result<Option<(Light, f64)>, &'static str> {
         let around = self.surroundings(w);
         let unit =
             |d: [f32; 3]| Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero");
         let at = |p: [f32; 3]| {
             let p = Vec3::from(p);
-            if p.is_finite() && p.abs().max_element() <= 1e15 {
-                Ok(p)
-            } else {
-                Err("the lamp's position must be finite")
-            }
+            if is_reachable(p) { Ok(p) } else { Err("the lamp's position must be finite, and within 1e15") }
         };
         let colour = |c: Rgb| {
             if c.is_valid() {
@@ -142,11 +153,12 @@ impl Scene {
                 Err("a lamp's colour must be finite and not negative")
             }
         };
-        let full = 4.0 * std::f32::consts::PI;
+        let full = 4.0 * std::f64::consts::PI;
+        let luminance = |s| f64::from(w.luminance(s));
         Ok(Some(match *kind {
             LightKind::Point { position, intensity } => {
                 let intensity = colour(intensity)?;
-                (Light::Point { position: at(position)?, intensity }, full * w.luminance(intensity))
+                (Light::Point { position: at(position)?, intensity }, full * luminance(intensity))
             }
             LightKind::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 if !(0.0 <= inner_angle
@@ -159,11 +171,11 @@ impl Scene {
                 let intensity = colour(intensity)?;
                 let spot =
                     SpotLight::new(at(position)?, unit(direction)?, intensity, inner_angle, outer_angle);
-                (Light::Spot(spot), spot.solid_angle() * w.luminance(intensity))
+                (Light::Spot(spot), f64::from(spot.solid_angle()) * luminance(intensity))
             }
             LightKind::Directional { direction, irradiance } => {
                 let irradiance = colour(irradiance)?;
-                let power = power_through_disk(w.luminance(irradiance), self.radius);
+                let power = power_through_disk(luminance(irradiance), self.radius);
                 (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
             }
             LightKind::Constant { radiance } => {
@@ -178,6 +190,9 @@ impl Scene {
                 };
                 if shears([x, y, z]) {
                     return Err("the environment's transform shears space: its axes must be at right angles");
+                }
+                if !(scale >= 0.0 && scale.is_finite()) {
+                    return Err("the environment's scale must be finite and not negative");
                 }
                 let pixels = &self.images[image.0 as usize];
                 let Some(map) = EnvironmentMap::new(image.0, pixels, scale, [x, y, z]) else {
@@ -248,23 +263,43 @@ impl Scene {
     /// Whether no ray that leaves the front of the shape meets the front of a surface, or a transparent one:
     /// looked at from a few dozen places.
     pub(crate) fn faces_nothing(&self, shape: usize) -> bool {
+        self.probes(shape).is_some_and(|mut probes| {
+            probes.all(|(p, u)| {
+                let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(u));
+                let ray = Ray { origin: p.off_surface(d), direction: d, t_max: f32::INFINITY };
+                self.closest(&ray)
+                    .is_none_or(|q| q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits())
+            })
+        })
+    }
+
+    /// Whether another surface is hit in the place of the shape, from in front of it: looked at from a few dozen
+    /// places.
+    pub(crate) fn lies_in_another(&self, shape: usize) -> bool {
+        self.probes(shape).is_some_and(|mut probes| {
+            probes.any(|(p, _)| {
+                let ray =
+                    Ray { origin: p.off_surface(p.normal), direction: -p.normal, t_max: 3.0 * p.offset };
+                self.closest(&ray).is_some_and(|q| q.shape as usize != shape)
+            })
+        })
+    }
+
+    /// Points of a mesh, each with two numbers to choose a direction by; `None` for spheres.
+    fn probes(&self, shape: usize) -> Option<impl Iterator<Item = (SurfacePoint, [f32; 2])>> {
         let flat = self.surfaces.shapes[shape];
         if self.surfaces.sphere(flat.first_primitive).is_some() {
-            return false;
+            return None;
         }
         let probes = 64_u32;
         let mut stream = SampleStream::new(StreamId { seed: 0, pixel: shape as u32, sample: 0, walk: 0 });
-        (0..probes).all(|i| {
+        Some((0..probes).map(move |i| {
             // In 64 bits, because a shape may have 2²⁷ triangles.
             let share = u64::from(i) * u64::from(flat.primitive_count) / u64::from(probes);
             let triangle = flat.first_primitive + (share as u32).min(flat.primitive_count - 1);
             let [b1, b2] = warp::uniform_triangle(stream.next_2d());
-            let p = self.surfaces.triangle_point(triangle, b1, b2);
-            let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(stream.next_2d()));
-            let ray = Ray { origin: p.off_surface(d), direction: d, t_max: f32::INFINITY };
-            self.closest(&ray)
-                .is_none_or(|q| q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits())
-        })
+            (self.surfaces.triangle_point(triangle, b1, b2), stream.next_2d())
+        }))
     }
 
     /// The surface tables.

@@ -1,13 +1,14 @@
 //! Surfaces as rays find them: flat tables of corners and triangles, and the points that are hit.
 
 mod border;
+mod flatten;
 
 use caustica_math::elementary::{asin, atan2};
-use caustica_math::{Frame, Transform, Vec2, Vec3};
+use caustica_math::{Frame, Vec2, Vec3, spherical};
 
 use crate::bvh::{Hit, SphereData};
-use crate::description::{Geometry, Mesh, Shape};
-use crate::diagnostic::Diagnostic;
+
+pub(crate) use flatten::{FARTHEST, is_reachable, unreachable};
 
 /// No index.
 const NONE: u32 = u32::MAX;
@@ -82,182 +83,12 @@ struct FlatSphere {
 /// The relative error of a hit's position, with room to spare: a dozen roundings of 2⁻²⁴.
 pub(crate) const POSITION_ERROR: f32 = 1e-6;
 
+/// Triangles without a larger area are left out: a density on one must stay finite.
+const LEAST_AREA: f64 = 1e-36;
+/// sin² of the angle of two sides below which their product is taken with more digits.
+const THIN: f32 = 1e-6;
+
 impl Surfaces {
-    /// Flattens the shapes, taking their meshes; pushes warnings.
-    ///
-    /// # Errors
-    /// A vertex that is not finite, an index out of range, a transform that cannot be inverted, a sphere
-    /// that is scaled unevenly, a radius that is not positive, more than 2²⁷ primitives.
-    pub fn new(shapes: &mut [Shape], warnings: &mut Vec<Diagnostic>) -> Result<Self, Diagnostic> {
-        let mut surfaces = Self::default();
-        for (index, shape) in shapes.iter_mut().enumerate() {
-            if !shape.to_world.is_invertible() {
-                return Err(shape_error(shape, "has a transform that cannot be inverted"));
-            }
-            let geometry = std::mem::replace(&mut shape.geometry, Geometry::Mesh(Mesh::default()));
-            match geometry {
-                Geometry::Mesh(mesh) => surfaces.add_mesh(index as u32, mesh, shape, warnings)?,
-                // Spheres follow all triangles: see below.
-                sphere @ Geometry::Sphere { .. } => {
-                    shape.geometry = sphere;
-                    surfaces.shapes.push(surfaces.empty_shape(shape));
-                }
-            }
-        }
-        for (index, shape) in shapes.iter().enumerate() {
-            if let Geometry::Sphere { center, radius } = shape.geometry {
-                surfaces.add_sphere(index as u32, (center, radius), shape)?;
-            }
-        }
-        if surfaces.triangles.len() + surfaces.spheres.len() > crate::bvh::MAX_PRIMITIVES {
-            return Err(Diagnostic::error(format!(
-                "the scene has {} triangles and {} spheres; at most {} are supported",
-                surfaces.triangles.len(),
-                surfaces.spheres.len(),
-                crate::bvh::MAX_PRIMITIVES
-            )));
-        }
-        Ok(surfaces)
-    }
-
-    fn empty_shape(&self, shape: &Shape) -> FlatShape {
-        FlatShape {
-            material: shape.material.0,
-            light: None,
-            first_primitive: self.triangles.len() as u32,
-            primitive_count: 0,
-            needs_uv: true,
-            first_position: self.positions.len() as u32,
-            first_normal: NONE,
-            first_uv: NONE,
-        }
-    }
-
-    fn add_mesh(
-        &mut self,
-        index: u32,
-        mesh: Mesh,
-        shape: &Shape,
-        warnings: &mut Vec<Diagnostic>,
-    ) -> Result<(), Diagnostic> {
-        let mut flat = self.empty_shape(shape);
-        let count = mesh.positions.len();
-        for (what, n) in [("normals", mesh.normals.len()), ("texture coordinates", mesh.uvs.len())] {
-            if n != 0 && n != count {
-                return Err(shape_error(shape, &format!("has {count} vertices but {n} {what}")));
-            }
-        }
-        if self.positions.len() + count > NONE as usize {
-            return Err(shape_error(shape, "has too many vertices"));
-        }
-        self.add_vertices(&mut flat, &mesh, shape)?;
-        let (mut degenerate, mut kept) = (0usize, 0u32);
-        for corners in &mesh.triangles {
-            if corners.iter().any(|c| *c as usize >= count) {
-                return Err(shape_error(shape, "has a triangle whose corner does not exist"));
-            }
-            match self.orient(&flat, corners.map(|c| c + flat.first_position), shape.to_world.mirrors()) {
-                Some(triangle) => {
-                    self.triangles.push(triangle);
-                    self.triangle_shapes.push(index);
-                    kept += 1;
-                }
-                None => degenerate += 1,
-            }
-        }
-        flat.primitive_count = kept;
-        if kept == 0 {
-            return Err(shape_error(shape, "has no triangle with an area")
-                .hint("check that the mesh file is not empty and the transform does not flatten it"));
-        }
-        if degenerate > 0 {
-            warnings.push(
-                Diagnostic::warning(format!(
-                    "{}: left out {degenerate} triangles without an area",
-                    shape.name
-                ))
-                .at(shape.origin.clone()),
-            );
-        }
-        self.shapes.push(flat);
-        Ok(())
-    }
-
-    fn add_vertices(&mut self, flat: &mut FlatShape, mesh: &Mesh, shape: &Shape) -> Result<(), Diagnostic> {
-        for (i, p) in mesh.positions.iter().enumerate() {
-            let world = shape.to_world.point(*p);
-            // Squares of coordinates must stay finite too.
-            if !world.is_finite() || world.abs().max_element() > 1e15 {
-                return Err(shape_error(
-                    shape,
-                    &format!("has a vertex (number {}) that is not finite", i + 1),
-                ));
-            }
-            self.positions.push(world);
-        }
-        if !mesh.normals.is_empty() {
-            flat.first_normal = self.normals.len() as u32;
-            // A normal that says nothing is stored as zero: the geometric one is used in its place.
-            let world = |n: &Vec3| shape.to_world.normal(*n).try_normalized().unwrap_or(Vec3::ZERO);
-            self.normals.extend(mesh.normals.iter().map(world));
-        }
-        if !mesh.uvs.is_empty() {
-            flat.first_uv = self.uvs.len() as u32;
-            self.uvs.extend_from_slice(&mesh.uvs);
-        }
-        Ok(())
-    }
-
-    /// Orders a triangle's corners so that its geometric normal points out: by the winding, which a
-    /// mirroring transform reverses, unless all three shading normals are on the other side. `None` if the
-    /// triangle has no area.
-    fn orient(&self, flat: &FlatShape, [a, b, c]: [u32; 3], mirrored: bool) -> Option<[u32; 3]> {
-        let p = |i: u32| self.positions[i as usize];
-        let normal = (p(b) - p(a)).cross(p(c) - p(a));
-        normal.try_normalized().filter(|_| normal.length_squared() > 0.0)?;
-        let mut outward = if mirrored { -normal } else { normal };
-        if flat.first_normal != NONE {
-            let side = |i: u32| self.shading_normal(flat, i).dot(outward);
-            if side(a) < 0.0 && side(b) < 0.0 && side(c) < 0.0 {
-                outward = -outward;
-            }
-        }
-        Some(if outward.dot(normal) > 0.0 { [a, b, c] } else { [a, c, b] })
-    }
-
-    fn shading_normal(&self, flat: &FlatShape, vertex: u32) -> Vec3 {
-        self.normals[(vertex - flat.first_position + flat.first_normal) as usize]
-    }
-
-    fn add_sphere(
-        &mut self,
-        index: u32,
-        (center, radius): (Vec3, f32),
-        shape: &Shape,
-    ) -> Result<(), Diagnostic> {
-        let scale = shape.to_world.uniform_scale().ok_or_else(|| {
-            shape_error(shape, "is a sphere that its transform stretches into something else")
-                .hint("use the same scale on all three axes, or a mesh")
-        })?;
-        let data = SphereData { center: shape.to_world.point(center), radius: radius * scale };
-        if !data.center.is_finite() || data.center.abs().max_element() > 1e15 {
-            return Err(shape_error(shape, "is a sphere whose centre is not finite"));
-        }
-        if !(data.radius > 0.0 && data.radius < 1e15) {
-            return Err(shape_error(shape, "is a sphere whose radius is not a positive number"));
-        }
-        let to_shape: Transform = shape.to_world.inverse();
-        // Rows of the inverse's linear part, scaled to length one by the uniform scale.
-        let column = |axis: Vec3| to_shape.vector(axis) * scale;
-        let (x, y, z) = (column(Vec3::X), column(Vec3::Y), column(Vec3::Z));
-        let row = |i: usize| Vec3::new(x[i], y[i], z[i]);
-        let flat = &mut self.shapes[index as usize];
-        flat.first_primitive = (self.triangles.len() + self.spheres.len()) as u32;
-        flat.primitive_count = 1;
-        self.spheres.push(FlatSphere { data, shape: index, rows: [row(0), row(1), row(2)] });
-        Ok(())
-    }
-
     /// Corners of all triangles, for the tree.
     pub fn positions(&self) -> &[Vec3] {
         &self.positions
@@ -328,13 +159,14 @@ impl Surfaces {
     fn point_between(&self, primitive: u32, &[a, b, c]: &[Vec3; 3], [b1, b2]: [f32; 2]) -> SurfacePoint {
         let b0 = 1.0 - b1 - b2;
         let position = a * b0 + b * b1 + c * b2;
-        let normal = (b - a).cross(c - a);
-        // Tiny triangles have normals whose squared length underflows.
+        let (u, v) = (b - a, c - a);
+        let normal = u.cross(v);
         let squared = normal.length_squared();
-        let normal = if squared > 1e-30 {
+        // Of tiny triangles the square underflows, and of thin ones the product loses its digits.
+        let normal = if squared > 1e-30 && squared > THIN * u.length_squared() * v.length_squared() {
             normal * (1.0 / squared.sqrt())
         } else {
-            normal.try_normalized().unwrap_or(Vec3::Z)
+            exact_normal([a, b, c]).unwrap_or(Vec3::Z)
         };
         let shape = self.triangle_shapes[primitive as usize];
         let flat = &self.shapes[shape as usize];
@@ -394,7 +226,10 @@ impl Surfaces {
     }
 }
 
-/// "`mesh.obj` has …", at the shape's place.
-fn shape_error(shape: &Shape, what: &str) -> Diagnostic {
-    Diagnostic::error(format!("{} {what}", shape.name)).at(shape.origin.clone())
+/// The unit normal of a triangle by its winding; `None` if its area is zero, or so small that a density on it
+/// would not be finite.
+fn exact_normal([a, b, c]: [Vec3; 3]) -> Option<Vec3> {
+    let normal = spherical::cross(spherical::between(a, b), spherical::between(a, c));
+    let length = spherical::dot(normal, normal).sqrt();
+    (0.5 * length > LEAST_AREA).then(|| Vec3::from(normal.map(|n| (n / length) as f32)))
 }

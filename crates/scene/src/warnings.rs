@@ -18,6 +18,36 @@ pub(crate) fn check(scene: &Scene, description: &Description, warnings: &mut Vec
     open_dielectrics(scene, description, warnings);
     lamps_that_face_away(scene, description, warnings);
     bright_albedos(description, warnings);
+    clipped(scene, warnings);
+    if warnings.len() > MOST_WARNINGS {
+        let more = warnings.len() - MOST_WARNINGS;
+        warnings.truncate(MOST_WARNINGS);
+        warnings.push(Diagnostic::warning(format!("there are {more} more warnings, which are not shown")));
+    }
+}
+
+/// The most warnings that are kept: more of them help nobody.
+const MOST_WARNINGS: usize = 1000;
+
+/// Lamps beyond so many are not looked at one by one: it takes many rays each.
+const MOST_LAMPS: usize = 1000;
+
+/// Clip planes that leave nothing of the scene.
+fn clipped(scene: &Scene, warnings: &mut Vec<Diagnostic>) {
+    let (center, radius) = scene.bounding_sphere();
+    let (near, far) = scene.camera.clips();
+    let distance = (center - scene.camera.position()).length();
+    let plane = match () {
+        () if scene.bvh().bounds().is_empty() => return,
+        () if distance + radius < near => "nearer than its near",
+        () if distance - radius > far => "farther than its far",
+        () => return,
+    };
+    warnings.push(
+        Diagnostic::warning(format!("the camera sees no surface: all are {plane} clip plane")).hint(
+            "clip planes are in the scene's units: `nearClip` and `farClip`, 1e-4 and 1e4 if nobody says",
+        ),
+    );
 }
 
 /// A dielectric mesh that is not closed, alone or by others, refracts light into a medium that it never leaves.
@@ -41,28 +71,52 @@ fn open_dielectrics(scene: &Scene, description: &Description, warnings: &mut Vec
     }
 }
 
-/// A flat lamp that lies on another surface, or faces out of the scene, lights nothing.
+/// A flat lamp that lies on another surface, or faces out of the scene, lights nothing; and one that lies in another
+/// surface is seen by some paths and not by others.
 fn lamps_that_face_away(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
-    for (index, shape) in description.shapes.iter().enumerate() {
-        if shape.emission.is_some() && scene.faces_nothing(index) {
-            warnings.push(
-                Diagnostic::warning(format!("{} is a lamp that faces away from everything", shape.name))
-                    .at(shape.origin.clone())
-                    .hint("a lamp emits on the side of its normal: reverse its triangles"),
-            );
-        }
+    let lamps = description.shapes.iter().enumerate().filter(|(_, s)| s.emission.is_some());
+    for (index, shape) in lamps.take(MOST_LAMPS) {
+        let (what, hint) = if scene.lies_in_another(index) {
+            (
+                "lies in the plane of another surface: which of them is seen is left to rounding",
+                "move it a little in front of the surface",
+            )
+        } else if scene.faces_nothing(index) {
+            (
+                "is a lamp that faces away from everything",
+                "a lamp emits on the side of its normal: reverse its triangles",
+            )
+        } else {
+            continue;
+        };
+        let message = format!("{} {what}", shape.name);
+        warnings.push(Diagnostic::warning(message).at(shape.origin.clone()).hint(hint));
     }
 }
 
 fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
     for m in &description.materials {
-        if let MaterialKind::Diffuse { albedo: Texture::Constant(c) } = &m.kind
-            && c.max_channel() > 1.0
-        {
-            warnings.push(
-                Diagnostic::warning("a diffuse albedo above one reflects more light than arrives")
-                    .at(m.origin.clone()),
-            );
+        let (what, colour) = match &m.kind {
+            MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => {
+                ("a diffuse albedo", brightest(t))
+            }
+            MaterialKind::Mirror { reflectance: c }
+            | MaterialKind::Conductor { reflectance: c, .. }
+            | MaterialKind::RoughConductor { reflectance: c, .. } => ("a reflectance", c.max_channel()),
+            MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => continue,
+        };
+        if colour > 1.0 {
+            let message = format!("{what} above one reflects more light than arrives");
+            warnings.push(Diagnostic::warning(message).at(m.origin.clone()));
         }
+    }
+}
+
+/// The largest channel of a texture without images.
+fn brightest(texture: &Texture) -> f32 {
+    match texture {
+        Texture::Constant(c) => c.max_channel(),
+        Texture::Checkerboard { value1, value2, .. } => value1.max_channel().max(value2.max_channel()),
+        Texture::Image { .. } => 0.0,
     }
 }

@@ -196,10 +196,23 @@ impl<'a> Kernel<'a> {
             && film.y <= (w.y + w.height) as f32 + r
     }
 
+    /// Gives the sample's value to its pixel, or tells that it is none.
+    #[inline]
+    pub(crate) fn deliver<S: Sink>(&self, value: Spectrum, filter_weight: f32, sink: &mut S) {
+        if !value.is_valid() {
+            sink.invalid();
+        }
+        let value = if value.is_valid() { value } else { Spectrum::ZERO };
+        sink.eye(self.wavelengths.rgb(value * filter_weight));
+    }
+
     /// Splats at every film position that shows the same place. The position itself is one that [`Kernel::is_seen`]
     /// found to be seen.
     #[inline]
     pub(crate) fn splat<S: Sink>(&self, film: Vec2, value: Spectrum, sink: &mut S) {
+        if !value.is_valid() || (film.x + film.y).is_nan() {
+            return sink.invalid();
+        }
         let rgb = self.wavelengths.rgb(value);
         if !self.scene.camera.wraps() {
             return sink.splat(film, rgb);
@@ -211,12 +224,14 @@ impl<'a> Kernel<'a> {
         }
     }
 
-    /// Whether any alias of a film position is near enough to the window.
+    /// Whether any alias of a film position is near enough to the window. One that is no number is let through, so that
+    /// [`Kernel::splat`] tells of it.
     #[inline]
     pub(crate) fn is_seen(&self, film: Vec2) -> bool {
         if !self.scene.camera.wraps() {
-            return self.reaches_window(film);
+            return self.reaches_window(film) || (film.x + film.y).is_nan();
         }
-        self.scene.camera.aliases(film, self.filter.radius()).any(|a| self.reaches_window(a))
+        (film.x + film.y).is_nan()
+            || self.scene.camera.aliases(film, self.filter.radius()).any(|a| self.reaches_window(a))
     }
 }

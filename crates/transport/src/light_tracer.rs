@@ -24,6 +24,9 @@ impl Kernel<'_> {
         }
         let flight = emission_flight(&emission);
         let (mut ray, mut throughput) = (flight.ray, flight.throughput);
+        if !throughput.is_valid() {
+            return sink.invalid();
+        }
         let first = throughput.max_lane();
         for bounce in 1..self.max_edges {
             let Some(point) = self.scene.closest(&ray) else { return };
@@ -33,6 +36,9 @@ impl Kernel<'_> {
             let drawn = numbers.bounce(bounce - 1, &vertex.bsdf, roulette);
             let Some((direction, s, _)) = vertex.sample(Walk::FromLight, drawn.u) else { return };
             throughput *= s.value * (1.0 / s.forward.0);
+            if !throughput.is_valid() {
+                return sink.invalid();
+            }
             if roulette {
                 let survival = (throughput.max_lane() / first).min(0.95);
                 if drawn.survival >= survival {

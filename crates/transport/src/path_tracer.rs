@@ -80,6 +80,10 @@ impl Kernel<'_> {
             let bounce = numbers.bounce(edges - 1, &vertex.bsdf, roulette);
             let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
             throughput *= s.value * (1.0 / s.forward.0);
+            if !throughput.is_valid() {
+                sink.invalid();
+                break;
+            }
             radiance_scale *= vertex.radiance_scale(direction);
             arrival = if delta {
                 Arrival::Sure
@@ -96,7 +100,7 @@ impl Kernel<'_> {
             }
             ray = Ray { origin: vertex.point.off_surface(direction), direction, t_max: f32::INFINITY };
         }
-        sink.eye(self.wavelengths.rgb(sum * filter_weight));
+        self.deliver(sum, filter_weight, sink);
     }
 
     /// The weighted radiance of a lamp that the ray hit.

@@ -23,6 +23,15 @@ pub trait Sink {
     /// already divided by their number in one pass.
     fn splat(&mut self, film: Vec2, value: Rgb);
 
+    /// Tells that a numerical failure ended a walk or spoilt a contribution, which is left out: something was not
+    /// finite, or negative, where nothing can be. (What a surface absorbs, or what is not sampled, is no failure.) It
+    /// may come at any time of a sample, more than once.
+    ///
+    /// If nobody else listens it goes where films count it: to [`Sink::eye`], as a value that is not a number.
+    fn invalid(&mut self) {
+        self.eye(Rgb::splat(f32::NAN));
+    }
+
     /// One strategy's contribution, before it is added.
     fn contribution(&mut self, _: &Contribution<'_>) {}
 }

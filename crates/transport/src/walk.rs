@@ -39,6 +39,17 @@ pub(crate) struct Subpath {
     pub origin_reverse: f32,
     /// Whether a camera walk left the scene, and how.
     pub escape: Option<Escape>,
+    /// Whether a numerical failure ended the walk.
+    pub failed: bool,
+}
+
+impl Subpath {
+    /// Makes room for another walk.
+    pub(crate) fn clear(&mut self) {
+        self.vertices.clear();
+        self.escape = None;
+        self.failed = false;
+    }
 }
 
 /// A camera walk that left the scene: a vertex at infinity.
@@ -81,8 +92,7 @@ impl Kernel<'_> {
         numbers: &mut impl Bounces,
         path: &mut Subpath,
     ) {
-        path.vertices.clear();
-        path.escape = None;
+        path.clear();
         let walk = start.walk();
         // A light path still needs an edge to the camera.
         let max_edges = self.max_edges - usize::from(walk == Walk::FromLight);
@@ -99,10 +109,21 @@ impl Kernel<'_> {
                 Some(from) => Edge::finite(point.position.distance_squared(from)),
                 None => Edge::INFINITE,
             };
-            vertex.forward = flight.pdf * edge.jacobian(vertex.cos(vertex.prev));
+            let cos = vertex.cos(vertex.prev);
+            vertex.forward = flight.pdf * edge.jacobian(cos);
             vertex.back = edge.jacobian(flight.cos);
             vertex.throughput = flight.throughput;
-            if !(vertex.forward > 0.0 && vertex.forward.is_finite() && vertex.back.is_finite()) {
+            // Surfaces seen edge-on are never found; a density that is lost otherwise is a failure.
+            let found = vertex.forward > 0.0 || cos == 0.0;
+            if !(found
+                && vertex.forward.is_finite()
+                && vertex.back.is_finite()
+                && vertex.throughput.is_valid())
+            {
+                path.failed = true;
+                return;
+            }
+            if cos == 0.0 {
                 return;
             }
             vertex.sums = match path.vertices.last() {
@@ -131,6 +152,10 @@ impl Kernel<'_> {
         let Some((direction, scatter, delta)) = vertex.sample(walk, bounce.u) else { return false };
         vertex.delta = delta;
         flight.throughput *= scatter.value * (1.0 / scatter.forward.0);
+        if !flight.throughput.is_valid() {
+            path.failed = true;
+            return false;
+        }
         flight.pdf = scatter.forward.0;
         flight.from = Some(vertex.point.position);
         flight.cos = vertex.cos(direction);
@@ -158,25 +183,24 @@ impl Kernel<'_> {
     /// The sums of a walk's first surface vertex.
     #[inline]
     fn first_sums(&self, start: &Start<'_>, vertex: &Vertex) -> RunningSums {
-        let h = self.heuristic;
-        let inverse = 1.0 / h.of(vertex.forward);
+        let inverse = 1.0 / vertex.forward;
         match start {
             // One vertex less is t = 1, which every light path tries.
             Start::Camera if self.classes.splat => {
-                RunningSums { recent: h.of(self.light_paths) * inverse, past: 0.0 }
+                RunningSums { recent: self.light_paths * inverse, past: 0.0 }
             }
             Start::Camera => RunningSums::default(),
             Start::Light(emission) => {
                 let lights = self.scene.lights(self.wavelengths);
-                let emitted = 1.0 / h.of(emission.pdf.point.0);
+                let emitted = 1.0 / emission.pdf.point.0;
                 let mut sums = RunningSums::default();
                 if self.classes.next_event {
                     // One vertex less is s = 1, which finds the lamp by another density.
                     let found = lights.towards_pdf(vertex.point.position, &emission.point);
-                    sums.recent = h.of(found.0) * emitted * inverse;
+                    sums.recent = found.0 * emitted * inverse;
                 }
                 if self.classes.hit && !lights.lights.get(emission.point.light).is_delta() {
-                    sums.past = h.of(vertex.back) * emitted * inverse;
+                    sums.past = vertex.back * emitted * inverse;
                 }
                 sums
             }
@@ -190,8 +214,7 @@ impl Kernel<'_> {
             (Some(previous), _) => self.step(previous.sums, flight, forward, back),
             // Seen directly: one vertex less is t = 1.
             (None, Some(_)) if self.classes.splat => {
-                let h = self.heuristic;
-                RunningSums { recent: h.of(self.light_paths / forward), past: 0.0 }
+                RunningSums { recent: self.light_paths / forward, past: 0.0 }
             }
             // A parallel projection sees one direction only; no light path can be joined with it there.
             (None, _) => RunningSums::default(),
@@ -205,7 +228,6 @@ impl Kernel<'_> {
 #[inline]
 fn survives(flight: &mut Flight, first_throughput: f32, u: f32) -> bool {
     let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
-    // A NaN stays, fails the comparison and ends the walk.
     let survival = if left > MAX_SURVIVAL { MAX_SURVIVAL } else { left };
     flight.throughput *= 1.0 / survival;
     u < survival

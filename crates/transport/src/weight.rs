@@ -35,11 +35,26 @@ impl Heuristic {
             Self::Power => density * density,
         }
     }
+
+    /// The density of which the function is the sum of that of two.
+    #[inline]
+    fn sum(self, a: f32, b: f32) -> f32 {
+        match self {
+            Self::Balance => a + b,
+            Self::Power => {
+                // The larger is taken out, as squares leave the range of f32 where distances are small or large.
+                let (most, least) = if a > b { (a, b) } else { (b, a) };
+                let ratio = if most > 0.0 { least / most } else { 0.0 };
+                most * (1.0 + ratio * ratio).sqrt()
+            }
+        }
+    }
 }
 
 /// What a subpath that ends at vertex i contributes to the sum of all strategies' densities, relative to the
 /// density of the strategy that joins vertex i: `p←(xᵢ)·(recent + q·past)`, where p←(xᵢ) is the other walk's
-/// density of xᵢ and q its solid-angle density at xᵢ of going on to vertex i−1.
+/// density of xᵢ and q its solid-angle density at xᵢ of going on to vertex i−1. (So it is with the balance heuristic; for
+/// another one, each term is the density whose function is the sum of the strategies' functions.)
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunningSums {
     /// 1/p→(xᵢ) if the edge before xᵢ can be the one that joins: the strategy that is one vertex shorter.
@@ -66,10 +81,10 @@ impl RunningSums {
     #[inline]
     pub fn step(self, step: Step, joins: bool, h: Heuristic) -> Self {
         let recent = if step.delta { 0.0 } else { self.recent };
-        let inverse = 1.0 / h.of(step.forward);
+        let inverse = 1.0 / step.forward;
         Self {
             recent: if step.delta || !joins { 0.0 } else { inverse },
-            past: h.of(step.back) * inverse * (recent + h.of(step.reverse) * self.past),
+            past: step.back * inverse * h.sum(recent, step.reverse * self.past),
         }
     }
 
@@ -77,7 +92,7 @@ impl RunningSums {
     /// going on from it (per solid angle).
     #[inline]
     pub fn total(self, density: f32, onward: f32, h: Heuristic) -> f32 {
-        h.of(density) * (self.recent + h.of(onward) * self.past)
+        h.of(density * h.sum(self.recent, onward * self.past))
     }
 }
 

@@ -3,19 +3,21 @@
 use std::io::Cursor;
 
 use caustica_math::Rgb;
+use caustica_scene::MemoryLimit;
 use exr::meta::MetaData;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 
-use super::{Pixels, check_size};
+use super::{Fault, Pixels, check_memory, check_size};
 
 /// The most samples, over all channels, that the first layer may have.
 const MOST_SAMPLES: u64 = 1 << 30;
 
-pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+pub(super) fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
     for header in &meta.headers {
         let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
-        check_size(width, height)?;
+        let size = check_size(width, height)?;
+        check_memory(size, 4 * header.channels.list.len() as u64, memory)?;
         if width * height * header.channels.list.len() as u64 > MOST_SAMPLES {
             return Err("it has too many channels for its size".into());
         }
@@ -43,7 +45,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
         Some(planes) => planes,
         None => {
             let names: Vec<String> = channels.iter().take(16).map(|c| c.name.to_string()).collect();
-            return Err(format!("its first layer has neither R, G, B nor Y, but {}", names.join(", ")));
+            return Err(format!("its first layer has neither R, G, B nor Y, but {}", names.join(", ")).into());
         }
     };
     let count = width as usize * height as usize;

@@ -1,14 +1,15 @@
 //! JPEG.
 
 use caustica_math::Rgb;
+use caustica_scene::MemoryLimit;
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
-use super::{Pixels, check_size, srgb};
+use super::{Fault, Pixels, check_memory, check_size, srgb};
 
-pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+pub(super) fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault> {
     // Strict: a file that is cut off is an error, not a picture with a grey part.
     let options = DecoderOptions::default()
         .set_strict_mode(true)
@@ -19,6 +20,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
     decoder.decode_headers().map_err(|e| e.to_string())?;
     let info = decoder.info().ok_or("it has no header")?;
     let (width, height) = check_size(info.width.into(), info.height.into())?;
+    // The coefficients of progressive files are kept beside the colours.
+    check_memory((width, height), 9, memory)?;
     let data = decoder.decode().map_err(|e| e.to_string())?;
     let channels = decoder.output_colorspace().map_or(3, |c| c.num_components());
     let count = width as usize * height as usize;

@@ -8,9 +8,10 @@ mod srgb;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use caustica_math::Rgb;
-use caustica_scene::Diagnostic;
+use caustica_math::{MemoryShortage, Rgb};
 use caustica_scene::description::Image;
+use caustica_scene::memory::shortage;
+use caustica_scene::{Diagnostic, MemoryLimit};
 
 use crate::files;
 
@@ -35,10 +36,19 @@ pub struct ReadImage {
 /// Reads a PNG, JPEG or OpenEXR image. The content tells which it is, not the name. PNG and JPEG are
 /// taken as sRGB, OpenEXR as linear; transparency is ignored.
 pub fn read_image(path: &Path) -> Result<ReadImage, Diagnostic> {
-    let fail = |why: String| Diagnostic::error(format!("cannot read the image `{}`: {why}", path.display()));
-    let bytes = files::read(path, LARGEST_FILE).map_err(fail)?;
+    read_image_within(path, MemoryLimit::Machine)
+}
+
+/// The same in so much memory. An image that would take more is refused when its size is known, before it is decoded.
+pub fn read_image_within(path: &Path, memory: MemoryLimit) -> Result<ReadImage, Diagnostic> {
+    let fail = |fault: Fault| match fault {
+        Fault::File(why) => Diagnostic::error(format!("cannot read the image `{}`: {why}", path.display())),
+        Fault::Memory(e) => shortage(&format!("the image `{}`", path.display()), e)
+            .hint("make it smaller, or render where there is more memory"),
+    };
+    let bytes = files::read(path, LARGEST_FILE).map_err(|why| fail(why.into()))?;
     // The decoders are other people's code, and no file may bring the program down.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode(&bytes)))
+    let decoded = catch_unwind(AssertUnwindSafe(|| decode(&bytes, memory)))
         .unwrap_or_else(|_| Err("its decoder failed; the file is damaged".into()));
     let mut image = decoded.map_err(fail)?;
     let changed = image.pixels.iter_mut().flat_map(|p| p.0.iter_mut()).map(clean).filter(|c| *c).count();
@@ -62,11 +72,38 @@ struct Pixels {
     pixels: Vec<Rgb>,
 }
 
-fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+/// Why an image is not read.
+enum Fault {
+    /// What is wrong with the file.
+    File(String),
+    /// It does not fit.
+    Memory(MemoryShortage),
+}
+
+impl From<String> for Fault {
+    fn from(why: String) -> Self {
+        Self::File(why)
+    }
+}
+
+impl From<&str> for Fault {
+    fn from(why: &str) -> Self {
+        Self::File(why.to_owned())
+    }
+}
+
+/// Whether an image fits that has so many bytes a pixel in what its decoder gives: beside that there are its colours,
+/// and, where they are put together, a copy of them.
+fn check_memory((width, height): (u32, u32), decoded: u64, memory: MemoryLimit) -> Result<(), Fault> {
+    let pixels = u64::from(width) * u64::from(height);
+    memory.check(pixels * (decoded + 2 * size_of::<Rgb>() as u64)).map_err(Fault::Memory)
+}
+
+fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault> {
     match bytes {
-        [0x89, b'P', b'N', b'G', ..] => png::decode(bytes),
-        [0xFF, 0xD8, 0xFF, ..] => jpeg::decode(bytes),
-        [0x76, 0x2F, 0x31, 0x01, ..] => exr::decode(bytes),
+        [0x89, b'P', b'N', b'G', ..] => png::decode(bytes, memory),
+        [0xFF, 0xD8, 0xFF, ..] => jpeg::decode(bytes, memory),
+        [0x76, 0x2F, 0x31, 0x01, ..] => exr::decode(bytes, memory),
         _ => Err("it is neither PNG nor JPEG nor OpenEXR".into()),
     }
 }

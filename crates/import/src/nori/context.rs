@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use caustica_scene::description::{Geometry, ImageId, MaterialId, MaterialKind, Mesh};
+use caustica_scene::memory::shortage;
 use caustica_scene::{Description, Diagnostic, Origin};
 
 use super::tree::Place;
@@ -34,6 +35,12 @@ impl Warnings {
     pub(super) fn into_vec(self) -> Vec<Diagnostic> {
         self.0
     }
+}
+
+/// The bytes of a mesh.
+fn mesh_bytes(mesh: &Mesh) -> u64 {
+    let corners = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs);
+    (corners + size_of_val(&*mesh.triangles)) as u64
 }
 
 /// A description that is being filled.
@@ -77,11 +84,14 @@ impl<'c> Context<'c> {
         let path = self.folder.base.join(file);
         let known = self.meshes.get(&path).map(|shape| &self.description.shapes[*shape].geometry);
         let mesh = if let Some(Geometry::Mesh(mesh)) = known {
+            let bytes = mesh_bytes(mesh);
+            let error = |e| shortage(&format!("another copy of the mesh `{file}`"), e);
+            self.folder.memory.check(bytes).map_err(error).map_err(|e| self.place_if_unplaced(e, range))?;
             mesh.clone()
         } else {
             let read = match self.folder.embedded(file) {
                 Some(text) => obj::read_obj(text.as_bytes(), file),
-                None => obj::load_obj(&path),
+                None => obj::load_obj_within(&path, self.folder.memory),
             };
             let read = read.map_err(|e| self.place_if_unplaced(e, range))?;
             read.warnings.into_iter().for_each(|w| self.warnings.push(w));
@@ -102,7 +112,8 @@ impl<'c> Context<'c> {
         if let Some(id) = self.images.get(&path) {
             return Ok(*id);
         }
-        let read = image::read_image(&path).map_err(|e| self.place_if_unplaced(e, range))?;
+        let read = image::read_image_within(&path, self.folder.memory)
+            .map_err(|e| self.place_if_unplaced(e, range))?;
         for warning in read.warnings {
             let placed = self.place_if_unplaced(warning, range);
             self.warnings.push(placed);

@@ -26,6 +26,13 @@ pub(super) struct Pools {
     pub(super) normals: Vec<Vec3>,
 }
 
+impl Pools {
+    /// The bytes of all items.
+    pub(super) fn memory(&self) -> u64 {
+        (size_of_val(&*self.positions) + size_of_val(&*self.uvs) + size_of_val(&*self.normals)) as u64
+    }
+}
+
 /// Collects triangles; equal corners become one vertex.
 #[derive(Default)]
 pub(super) struct Builder {
@@ -38,6 +45,13 @@ pub(super) struct Builder {
 }
 
 impl Builder {
+    /// The bytes of all vertices and triangles.
+    pub(super) fn memory(&self) -> u64 {
+        let others = self.others.len() * 2 * size_of::<Corner>();
+        (size_of_val(&*self.vertices) + size_of_val(&*self.first) + others + size_of_val(&*self.triangles))
+            as u64
+    }
+
     /// The vertex of a corner; `None` if there are more than `u32` can count.
     pub(super) fn vertex(&mut self, corner: Corner) -> Option<u32> {
         let position = corner.position as usize;

@@ -111,6 +111,13 @@ impl Statements {
         }
     }
 
+    /// The bytes that reading on takes at least: tables that grow are copied to others as large; and if what was read
+    /// is one of `parts` equal ones, which is a guess, half of what the others take.
+    pub(super) fn memory_for(&self, parts: f64) -> u64 {
+        let now = self.pools.memory() + self.builder.memory();
+        now.max((now as f64 * 0.5 * (parts - 1.0)) as u64)
+    }
+
     fn face(&mut self, words: Words, here: (usize, &[u8]), number: u32) -> Result<(), Bad> {
         self.corners.clear();
         self.points.clear();

@@ -9,6 +9,8 @@ use super::lanes::Lanes;
 /// A ray made ready for box tests and for Woop's triangle test. `PARALLEL` says that a component of its direction
 /// is zero or almost.
 pub(super) struct LaneRay<L, const PARALLEL: bool> {
+    /// As it was given.
+    source: Ray,
     origin: [L; 3],
     /// Where the ray starts for planes that are left, if it is `PARALLEL`.
     far_origin: [L; 3],
@@ -81,6 +83,7 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
         let [x, y] = PERMUTATIONS[z][signs >> z & 1];
         let along = inverse[z];
         Self {
+            source: *ray,
             origin: splat(o),
             far_origin: splat(far_origin),
             inverse: splat([inverse[0], inverse[1], inverse[2]]),
@@ -147,6 +150,12 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
         let x = L::load(&points[kx]).sub(self.origin[kx]).sub(self.shear[0].mul(z));
         let y = L::load(&points[ky]).sub(self.origin[ky]).sub(self.shear[1].mul(z));
         [x, y, z]
+    }
+
+    /// The ray as it was given.
+    #[inline(always)]
+    pub(super) fn source(&self) -> &Ray {
+        &self.source
     }
 
     /// One over the direction along z.

@@ -8,7 +8,7 @@ use caustica_math::Vec3;
 use super::build::MAX_DEPTH;
 use super::lanes::{Lanes, Portable};
 use super::ray::{LaneRay, is_parallel};
-use super::triangle::{BLOCK, Best, NOTHING, SPHERE, TriangleBlock};
+use super::triangle::{BLOCK, Best, NOTHING, SPHERE, TriangleBlock, barycentrics};
 use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
@@ -112,7 +112,7 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
         }
         loop {
             if waiting == 0 {
-                return finish(blocks, &best);
+                return finish(blocks, ray, &best);
             }
             waiting -= 1;
             // SAFETY: what waits has been written.
@@ -177,7 +177,7 @@ fn lane(mask: u32) -> usize {
 }
 
 #[inline(always)]
-fn finish<L: Lanes>(blocks: &[TriangleBlock], best: &Best<L>) -> Option<Hit> {
+fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>) -> Option<Hit> {
     let (t, primitive) = (best.t, best.primitive);
     if primitive == NOTHING {
         return None;
@@ -189,7 +189,8 @@ fn finish<L: Lanes>(blocks: &[TriangleBlock], best: &Best<L>) -> Option<Hit> {
     let (v, w, det) = (best.edges[0].store()[lane], best.edges[1].store()[lane], best.det.store()[lane]);
     // SAFETY: the place is where a triangle was hit.
     let corners = unsafe { blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
-    Some(Hit { t, primitive, b1: v / det, b2: w / det, corners })
+    let [b1, b2] = if det == 0.0 { barycentrics(ray, corners) } else { [v / det, w / det] };
+    Some(Hit { t, primitive, b1, b2, corners })
 }
 
 #[inline(always)]

@@ -2,7 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 use caustica_math::Vec3;
+use caustica_math::spherical::{between, cross, dot};
 
+use super::Ray;
 use super::lanes::Lanes;
 use super::ray::LaneRay;
 
@@ -54,6 +56,35 @@ struct Crossings<L> {
     det: L,
 }
 
+/// Triangles that cover less than one in this many of the square around them, as a ray sees them, count as thin.
+const THIN: f32 = 64.0;
+
+/// The absolute values.
+#[inline(always)]
+fn size<L: Lanes>(v: L) -> L {
+    v.max(L::splat(0.0).sub(v))
+}
+
+/// Where a ray meets a triangle's plane; not a number or infinite where it runs along it.
+fn plane_distance(ray: &Ray, corners: [Vec3; 3]) -> f32 {
+    let [a, b, c] = corners;
+    let normal = cross(between(a, b), between(a, c));
+    (dot(normal, between(ray.origin, a)) / dot(normal, ray.direction.to_array().map(f64::from))) as f32
+}
+
+/// The barycentric coordinates of the second and third corner where a ray meets a triangle, for triangles so thin
+/// that those found lane by lane have lost all digits.
+#[cold]
+#[inline(never)]
+pub(super) fn barycentrics(ray: &Ray, corners: [Vec3; 3]) -> [f32; 2] {
+    let d = ray.direction.to_array().map(f64::from);
+    let [a, b, c] = corners.map(|p| between(ray.origin, p));
+    let edges = [dot(d, cross(c, b)), dot(d, cross(a, c)), dot(d, cross(b, a))];
+    let share = |edge: f64| (edge / (edges[0] + edges[1] + edges[2])).clamp(0.0, 1.0) as f32;
+    let [v, w] = [share(edges[1]), share(edges[2])];
+    if (v + w).is_nan() { [0.0; 2] } else { [v, w.min(1.0 - v)] }
+}
+
 impl TriangleBlock {
     /// A block of the given triangles, one to eight.
     pub(super) fn new(triangles: impl Iterator<Item = (u32, [Vec3; 3])>) -> Self {
@@ -98,7 +129,18 @@ impl TriangleBlock {
             return None;
         }
         let det = u.add(v).add(w);
-        let t = ray.along().mul(u.mul(az).add(v.mul(bz)).add(w.mul(cz))).div(det);
+        let depth = u.mul(az).add(v.mul(bz)).add(w.mul(cz));
+        let mut t = ray.along().mul(depth).div(det);
+        let spread = az.max(bz).max(cz).sub(az.min(bz).min(cz));
+        let near = inside & size(depth).le(size(det).mul(spread));
+        if near != 0 {
+            let reach = |a: L, b: L, c: L| size(a).max(size(b)).max(size(c)).add(spread);
+            let square = reach(ax, bx, cx).mul(reach(ay, by, cy));
+            let unsure = near & size(det).mul(L::splat(THIN)).le(square);
+            if unsure != 0 {
+                t = L::load(&self.refined(ray.source(), unsure, t.store()));
+            }
+        }
         let t_max = L::splat(t_max);
         let hit = inside & t.gt(zero) & t.le(t_max);
         if hit == 0 {
@@ -106,6 +148,19 @@ impl TriangleBlock {
         }
         let (mask, t) = self.clip(ray, t, t_max);
         (hit & mask != 0).then_some(Crossings { mask: hit & mask, t, edges: [v, w], det })
+    }
+
+    /// The distances with those of the lanes in `mask` found anew, from the triangles' planes.
+    ///
+    /// Distances are averages of the corners' with the edge values as weights. Where a triangle is long and thin
+    /// and the ray starts near by, the rounding of those moves a hit by more than its distance, and it may be lost.
+    #[cold]
+    #[inline(never)]
+    fn refined(&self, ray: &Ray, mask: u32, mut distances: [f32; BLOCK]) -> [f32; BLOCK] {
+        for (lane, t) in distances.iter_mut().enumerate().filter(|(lane, _)| mask >> lane & 1 == 1) {
+            *t = plane_distance(ray, self.corners(lane));
+        }
+        distances
     }
 
     /// The lanes whose triangle's own box the ray meets, and which hit before `t_max`; and their distances,

@@ -13,7 +13,7 @@ pub struct Camera {
     pub kind: CameraKind,
     /// Camera frame to world. Its scale does not matter except to [`CameraKind::Orthographic`].
     pub to_world: Transform,
-    /// Surfaces nearer than this along +z are not seen (by any but the environment camera, which takes
+    /// Surfaces nearer than this along +z, in the scene's units, are not seen (by any but the environment camera, which takes
     /// it as a distance).
     pub near: f32,
     /// Surfaces farther than this along +z are not seen.
@@ -39,7 +39,8 @@ impl Default for Camera {
 pub enum CameraKind {
     /// A pinhole.
     Perspective {
-        /// Horizontal field of view, in degrees.
+        /// Horizontal field of view, in degrees: between 0 and 180, and such that a pixel covers at least 10⁻⁸ of
+        /// the distance.
         fov: f32,
     },
     /// A thin lens.
@@ -68,7 +69,7 @@ pub struct FilmSettings {
     pub height: u32,
     /// The part of it to render; all of it if `None`.
     pub crop: Option<Crop>,
-    /// The pixel (reconstruction) filter.
+    /// The pixel (reconstruction) filter, of a radius up to 32.
     pub filter: Filter,
 }
 

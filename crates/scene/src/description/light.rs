@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use super::ImageId;
 use crate::Origin;
 
-/// A lamp that is not a surface.
+/// A lamp that is not a surface. One that emits nothing gets a warning; colours that are negative or not finite, and
+/// directions of length 0, are errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Light {
     /// What it is.

@@ -34,7 +34,7 @@ pub enum Texture {
     Checkerboard {
         /// Offset.
         delta: [f32; 2],
-        /// Size of a field.
+        /// Size of a field, not 0.
         scale: [f32; 2],
         /// Colour of the even fields.
         value1: Rgb,
@@ -80,7 +80,8 @@ pub struct Material {
     pub origin: Option<Origin>,
 }
 
-/// How a surface scatters light. The side of the normal is "outside" (`exterior_ior`), the other
+/// How a surface scatters light. Indices of refraction and their ratio lie between 10⁻⁶ and 10⁶, roughnesses and metals'
+/// indices between 0 and 10⁶; reflectances above one get a warning. Roughnesses below 10⁻⁴ count as that. The side of the normal is "outside" (`exterior_ior`), the other
 /// "inside".
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum MaterialKind {

@@ -2,6 +2,14 @@
 //!
 //! Units are SI: lengths in metres, radiance in W·m⁻²·sr⁻¹, intensity in W·sr⁻¹, irradiance in W·m⁻²;
 //! angles are in degrees. Colours are linear BT.709 RGB.
+//!
+//! [`Scene::new`](crate::Scene::new) refuses numbers that cannot be rendered with, and says which: what is not finite,
+//! colours that are negative, places beyond 10¹⁵ from the origin. A scene may be as small as 10⁻⁶ or as large as 10⁶
+//! and more; nothing in it has an absolute size but the camera's clip planes. Where light or densities leave the range
+//! of `f32` all the same, contributions are left out, and the film counts them as invalid.
+//!
+//! Of surfaces that coincide the one that comes first is seen where a ray meets both at the same distance, and
+//! otherwise either, by rounding; rays that leave one start beyond the other.
 
 mod camera;
 mod integrator;

@@ -1,10 +1,12 @@
 use std::f32::consts::PI;
 
 use caustica_math::elementary::safe_sqrt;
+use caustica_math::spherical::{between, cross, dot};
 use caustica_math::{AreaPdf, Distribution1d, Frame, Spectrum, Vec2, Vec3, warp};
 
 use super::quad::Quad;
 use super::seen::{Reach, Seen};
+use super::table::LEAST_SHARE;
 use super::{Anchor, Emission, EmissionPdf, LightPoint, Surroundings};
 use crate::bvh::SphereData;
 use crate::description::Texture;
@@ -44,32 +46,38 @@ const PROBES: u32 = 4;
 
 impl AreaLight {
     /// From a shape of the scene; returns it with its power in W. `None` if it emits nothing.
-    pub fn new(shape: &FlatShape, radiance: Texture, around: &Surroundings<'_>) -> Option<(Self, f32)> {
+    pub fn new(shape: &FlatShape, radiance: Texture, around: &Surroundings<'_>) -> Option<(Self, f64)> {
         let first = shape.first_primitive;
         let luminance = |p: &SurfacePoint| around.textures.rgb(&radiance, p.uv).luminance();
         // The probes may all miss a texture's bright spots, but no lamp may be lost that emits anywhere.
         let least = UNIFORM_PART * around.textures.mean_luminance(&radiance);
         if let Some(data) = around.surfaces.sphere(first) {
             let mean = sphere_mean(first, around, &luminance).max(least);
-            let power = PI * 4.0 * PI * data.radius * data.radius * mean;
+            let (pi, radius) = (f64::from(PI), f64::from(data.radius));
+            let power = pi * 4.0 * pi * radius * radius * f64::from(mean);
             let surface = Surface::Sphere { primitive: first, data: *data };
             return (power > 0.0).then_some((Self { radiance, surface }, power));
         }
         let triangles = first..first + shape.primitive_count;
-        let areas: Vec<f32> = triangles.clone().map(|t| area(around.surfaces.corners(t))).collect();
-        let means: Vec<f32> = triangles.map(|t| triangle_mean(t, around, &luminance)).collect();
-        // Sums of a million triangles need the precision.
-        let total_area: f64 = areas.iter().map(|a| f64::from(*a)).sum();
-        let power: f64 = areas.iter().zip(&means).map(|(a, m)| f64::from(*a) * f64::from(*m)).sum();
+        let areas: Vec<f64> = triangles.clone().map(|t| area(around.surfaces.corners(t))).collect();
+        let means: Vec<f32> = match radiance {
+            Texture::Constant(c) => vec![c.luminance(); areas.len()],
+            _ => triangles.map(|t| triangle_mean(t, around, &luminance)).collect(),
+        };
+        // Sums of a million triangles, and of light brighter than f32 can count over an area, need the precision.
+        let total_area: f64 = areas.iter().sum();
+        let power: f64 = areas.iter().zip(&means).map(|(a, m)| a * f64::from(*m)).sum();
         let mean = (power / total_area) as f32;
         let floor = (UNIFORM_PART * mean).max(least);
-        let weights: Vec<f32> = areas.iter().zip(&means).map(|(a, m)| a * (m + floor)).collect();
+        let all = total_area * f64::from(mean + floor);
+        if all <= 0.0 {
+            return None;
+        }
+        let weight = |(a, m): (&f64, &f32)| ((a * f64::from(m + floor) / all) as f32).max(LEAST_SHARE);
+        let weights: Vec<f32> = areas.iter().zip(&means).map(weight).collect();
         let choice = Distribution1d::new(&weights)?;
-        let density: Vec<f32> = areas
-            .iter()
-            .enumerate()
-            .map(|(i, a)| if *a > 0.0 { choice.mass(i).0 / a } else { 0.0 })
-            .collect();
+        let density: Vec<f32> =
+            areas.iter().enumerate().map(|(i, a)| (f64::from(choice.mass(i).0) / a) as f32).collect();
         let quad = match density[..] {
             [a, b] if (a - b).abs() <= EVEN * a => Quad::new([first, first + 1], around.surfaces),
             _ => None,
@@ -81,7 +89,7 @@ impl AreaLight {
             },
             |quad| Surface::Quad(Box::new(quad)),
         );
-        Some((Self { radiance, surface }, PI * mean.max(least) * total_area as f32))
+        Some((Self { radiance, surface }, f64::from(PI) * f64::from(mean.max(least)) * total_area))
     }
 
     /// The radiance at texture coordinates `uv`.
@@ -275,8 +283,9 @@ impl Cone {
     }
 }
 
-fn area([a, b, c]: [Vec3; 3]) -> f32 {
-    0.5 * (b - a).cross(c - a).length()
+fn area([a, b, c]: [Vec3; 3]) -> f64 {
+    let normal = cross(between(a, b), between(a, c));
+    0.5 * dot(normal, normal).sqrt()
 }
 
 fn triangle_mean(triangle: u32, around: &Surroundings<'_>, luminance: &dyn Fn(&SurfacePoint) -> f32) -> f32 {

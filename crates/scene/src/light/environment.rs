@@ -25,7 +25,7 @@ pub struct EnvironmentMap {
     axes: [Vec3; 3],
     table: Distribution2d,
     /// ∫ luminance dω.
-    flux: f32,
+    flux: f64,
 }
 
 /// Direction in the map's frame to the unit square, from the upper left corner.
@@ -69,16 +69,18 @@ impl EnvironmentMap {
         }
         // The solid angle of a cell is its width times the difference of two cosines.
         let cell = TAU / w as f32 * 2.0 * sin(0.5 * PI / h as f32);
-        let flux = (flux * f64::from(cell)) as f32 * scale;
+        let flux = flux * f64::from(cell) * f64::from(scale);
         Some(Self { image: index, scale, axes, table: Distribution2d::new(&weights, w)?, flux })
     }
 }
 
 impl EnvironmentLight {
     /// ∫ luminance dω.
-    pub fn flux(&self, around: &Surroundings<'_>) -> f32 {
+    pub fn flux(&self, around: &Surroundings<'_>) -> f64 {
         match self {
-            Self::Constant(radiance) => around.wavelengths.luminance(*radiance) * 2.0 * TAU,
+            Self::Constant(radiance) => {
+                f64::from(around.wavelengths.luminance(*radiance)) * 2.0 * f64::from(TAU)
+            }
             Self::Map(map) => map.flux,
         }
     }

@@ -3,7 +3,7 @@
 use caustica_math::spherical::{Relative, SphericalRectangle, SphericalTriangle, cross, dot};
 use caustica_math::{AreaPdf, ONE_BELOW, Vec2, Vec3};
 
-use super::seen::{NEAR, Near, Seen, least_height, relative};
+use super::seen::{NEAR, Seen, least_height, near, relative};
 use super::{Anchor, LightPoint};
 use crate::surface::{SurfacePoint, Surfaces};
 
@@ -140,7 +140,7 @@ impl Quad {
             });
             (Shape::Triangles(triangles), triangles[0].solid_angle() + triangles[1].solid_angle())
         };
-        Seen::Near(Near { shape, height: height as f32, solid_angle })
+        near(shape, height, solid_angle)
     }
 }
 

@@ -1,6 +1,6 @@
 //! From where a flat lamp is looked for by area, and from where by the solid angle that it covers.
 
-use caustica_math::spherical::{Relative, SphericalTriangle, cross, dot};
+use caustica_math::spherical::{Relative, SphericalTriangle, between, cross, dot};
 use caustica_math::{AreaPdf, Vec3};
 
 use super::LightPoint;
@@ -49,14 +49,28 @@ impl<S> Near<S> {
     pub fn area_pdf(&self, from: Vec3, point: &LightPoint) -> AreaPdf {
         let squared = point.at.distance_squared(from);
         let pdf = self.height / squared.sqrt() / (squared * self.solid_angle);
-        AreaPdf(if pdf.is_finite() { pdf } else { 0.0 })
+        // At the place itself nothing is found.
+        AreaPdf(if squared > 0.0 { pdf } else { 0.0 })
     }
 }
+
+/// A shape of that solid angle. One that is seen edge-on covers none that could be sampled.
+#[inline]
+pub fn near<S>(shape: S, height: f64, solid_angle: f32) -> Seen<S> {
+    if solid_angle >= LEAST_SOLID_ANGLE {
+        Seen::Near(Near { shape, height: height as f32, solid_angle })
+    } else {
+        Seen::ByArea
+    }
+}
+
+/// Smaller solid angles are rounding.
+const LEAST_SOLID_ANGLE: f32 = 1e-12;
 
 /// `corner` as it is seen from `from`.
 #[inline]
 pub fn relative(corner: Vec3, from: Vec3) -> Relative {
-    [0, 1, 2].map(|axis| f64::from(corner[axis]) - f64::from(from[axis]))
+    between(from, corner)
 }
 
 /// Where the triangles of a lamp may be near: a sphere around all of it. From elsewhere nobody needs to look at
@@ -126,5 +140,5 @@ fn near_triangle(corners: [Vec3; 3], from: Vec3) -> Seen<SphericalTriangle> {
         return Seen::ByArea;
     }
     let shape = SphericalTriangle::new([a, b, c]);
-    Seen::Near(Near { shape, height: height as f32, solid_angle: shape.solid_angle() })
+    near(shape, height, shape.solid_angle())
 }

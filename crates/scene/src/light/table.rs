@@ -7,6 +7,10 @@ use super::{Anchor, Emission, EmissionPdf, Light, LightPoint, Surroundings, Towa
 /// The part of the choice among lamps that is uniform.
 const UNIFORM_PART: f64 = 0.1;
 
+/// No lamp, and no triangle of one, gets a smaller share of a choice: of eight million at most, each can then be told
+/// from its neighbours by the 24 bits of a number in [0, 1), and none is lost.
+pub(super) const LEAST_SHARE: f32 = 1.0 / (1 << 23) as f32;
+
 /// All lamps of a scene, chosen by power.
 #[derive(Debug)]
 pub struct Lights {
@@ -21,14 +25,14 @@ impl Lights {
     ///
     /// A small part of the choice is uniform: a lamp that is weak in all may be all the light of a place, and a
     /// probability must not vanish beside a sun's.
-    pub fn new(lights: Vec<Light>, powers: &[f32]) -> Self {
+    pub fn new(lights: Vec<Light>, powers: &[f64]) -> Self {
         let environments = (0..lights.len() as u32)
             .filter(|i| matches!(lights[*i as usize], Light::Environment(_)))
             .collect();
-        let power: f64 = powers.iter().map(|p| f64::from(*p)).sum();
-        let weight = |p: &f32| {
+        let power: f64 = powers.iter().sum();
+        let weight = |p: &f64| {
             let uniform = UNIFORM_PART / powers.len() as f64;
-            ((1.0 - UNIFORM_PART) * f64::from(*p) / power + uniform) as f32
+            ((1.0 - UNIFORM_PART) * p / power + uniform).max(f64::from(LEAST_SHARE)) as f32
         };
         let weights: Vec<f32> = if power > 0.0 { powers.iter().map(weight).collect() } else { Vec::new() };
         Self { choice: Distribution1d::new(&weights), lights, power, environments }
@@ -127,8 +131,9 @@ impl LightQuery<'_> {
             }
         };
         emission.pdf.point = emission.pdf.point * chosen.mass;
-        let valid = emission.pdf.point.0 > 0.0 && emission.pdf.direction.0 > 0.0;
-        (valid && !emission.radiance.is_black()).then_some(emission)
+        // What is no number goes on, and is found and counted where it would have been added.
+        let none = emission.pdf.point.0 <= 0.0 || emission.pdf.direction.0 <= 0.0;
+        (!none && !emission.radiance.is_black()).then_some(emission)
     }
 
     /// The densities with which [`LightQuery::sample_emission`] begins at `point` in `direction`.
@@ -165,14 +170,9 @@ impl LightQuery<'_> {
         let (direction, distance) = point.direction_from(from);
         let radiance = self.radiance(&point, -direction);
         let pdf = pdf * chosen.mass;
-        // A place on the lamp itself has no direction to it.
-        (pdf.0 > 0.0 && distance > 0.0 && !radiance.is_black()).then_some(Towards {
-            point,
-            direction,
-            distance,
-            radiance,
-            pdf,
-        })
+        // A place on the lamp itself has no direction to it. What is no number goes on, to be counted.
+        let none = pdf.0 <= 0.0 || distance <= 0.0;
+        (!none && !radiance.is_black()).then_some(Towards { point, direction, distance, radiance, pdf })
     }
 
     /// The density with which [`LightQuery::sample_towards`] finds `point` from `from`.
@@ -238,6 +238,6 @@ fn from_infinity(
 
 /// The power in W of a lamp at infinity that sends the irradiance-like quantity `e` through the disk around
 /// the scene.
-pub(crate) fn power_through_disk(e: f32, radius: f32) -> f32 {
-    PI * radius * radius * e
+pub(crate) fn power_through_disk(e: f64, radius: f32) -> f64 {
+    f64::from(PI) * f64::from(radius) * f64::from(radius) * e
 }

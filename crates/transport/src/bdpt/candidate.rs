@@ -27,6 +27,8 @@ pub(crate) struct Candidates {
     list: Vec<Candidate>,
     /// The paths, for sinks that probe.
     joined: Vec<Joined>,
+    /// How many were no numbers, and are not in the list.
+    failed: u32,
 }
 
 /// Contributions that are smaller than this share of the sample's sum survive with a probability in proportion.
@@ -36,6 +38,7 @@ impl Candidates {
     pub(super) fn clear(&mut self) {
         self.list.clear();
         self.joined.clear();
+        self.failed = 0;
     }
 }
 
@@ -50,6 +53,10 @@ impl Kernel<'_> {
         candidates: &mut Candidates,
     ) {
         let Some(weight) = self.weigh(sample, &joined, running) else { return };
+        if !(joined.value * weight).is_valid() {
+            candidates.failed += 1;
+            return;
+        }
         candidates.list.push(Candidate { value: joined.value, weight, ray });
         if S::PROBES {
             candidates.joined.push(joined);
@@ -66,7 +73,10 @@ impl Kernel<'_> {
     ) -> Spectrum {
         let mut sum = Spectrum::ZERO;
         let total = candidates.list.iter().fold(certain, |all, c| all + c.value * c.weight);
-        let least = if S::KEEPS_ALL { 0.0 } else { NEGLIGIBLE * total.max_lane() };
+        (0..candidates.failed).for_each(|_| sink.invalid());
+        let least = NEGLIGIBLE * total.max_lane();
+        // Of a sum beyond all numbers every part is wanted: none is small beside it.
+        let least = if S::KEEPS_ALL || !least.is_finite() { 0.0 } else { least };
         // One number decides for all: of the sums of probabilities, those pass that step over an integer.
         let mut position = None;
         for (i, c) in candidates.list.iter().enumerate() {

@@ -65,7 +65,7 @@ impl Kernel<'_> {
                 let h = self.heuristic;
                 let one_less = if t == 2 {
                     // (1, 1): the lamp's point by emission.
-                    h.of(pdf.point.0) * end.sums.recent
+                    h.of(pdf.point.0 * end.sums.recent)
                 } else {
                     let from = &sample.eye.vertices[t - 3];
                     if from.delta || !self.classes.next_event {
@@ -74,7 +74,7 @@ impl Kernel<'_> {
                         h.of(lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
                     }
                 };
-                let further = h.of(pdf.point.0) * h.of(pdf.direction.0) * end.sums.past;
+                let further = h.of(pdf.point.0 * pdf.direction.0 * end.sums.past);
                 weight(0.0, one_less + further)
             },
             sink,

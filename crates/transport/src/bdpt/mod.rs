@@ -99,6 +99,11 @@ impl Kernel<'_> {
             None
         };
         let Scratch { eye, light, densities, candidates } = scratch;
+        for failed in [eye.failed, light.failed] {
+            if failed {
+                sink.invalid();
+            }
+        }
         let densities = RefCell::new(densities);
         let sample = Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities };
         let mut sum = Spectrum::ZERO;
@@ -116,12 +121,12 @@ impl Kernel<'_> {
         if classes.splat {
             self.splats(&sample, &mut light_numbers, sink);
         }
-        sink.eye(self.wavelengths.rgb(sum * filter_weight));
+        self.deliver(sum, filter_weight, sink);
     }
 
     /// Emits and grows the light path.
     fn light_path(&self, numbers: &mut LightNumbers, path: &mut Subpath) -> Option<Emission> {
-        path.vertices.clear();
+        path.clear();
         let [choice, u, v] = numbers.emission();
         let emission = self.scene.lights(self.wavelengths).sample_emission(choice, u, v)?;
         self.grow(emission_flight(&emission), &Start::Light(&emission), numbers, path);
@@ -138,10 +143,15 @@ impl Kernel<'_> {
         sink: &mut S,
     ) -> Spectrum {
         let Some(weight) = self.weigh(sample, joined, running) else { return Spectrum::ZERO };
+        let value = joined.value * weight;
+        if !value.is_valid() {
+            sink.invalid();
+            return Spectrum::ZERO;
+        }
         if S::PROBES {
             self.report(sample, joined, weight, sink);
         }
-        joined.value * weight
+        value
     }
 
     /// A contribution's weight; `None` if its strategy is not in the set. (Running sums are used with sets of whole

@@ -1,0 +1,113 @@
+//! Whether the numbers of materials, textures and film can be rendered with.
+
+use caustica_math::{Filter, Rgb};
+
+use crate::description::{Description, FilmSettings, Material, MaterialKind, Texture};
+use crate::diagnostic::Diagnostic;
+use crate::scene::texture_of;
+
+/// Indices of refraction and their ratios lie between one over this and this; roughnesses and the indices of metals
+/// between 0 and this. Their fourth powers are still far from the ends of `f32`.
+const MOST: f32 = 1e6;
+
+/// The widest filter, in pixels: every splat is added to all pixels that it covers.
+const WIDEST_FILTER: f32 = 32.0;
+
+/// Materials and the film's filter; emission is looked at where it is referred to.
+pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
+    d.materials.iter().try_for_each(material)?;
+    let emissions = d.shapes.iter().filter_map(|s| Some((s, s.emission.as_ref()?)));
+    for (shape, texture) in emissions {
+        let placed = |e: Diagnostic| e.at(shape.origin.clone());
+        placement(texture, &format!("the emission of {}", shape.name)).map_err(placed)?;
+    }
+    filter(&d.film)
+}
+
+fn material(m: &Material) -> Result<(), Diagnostic> {
+    let numbers = match m.kind {
+        MaterialKind::Diffuse { .. } => Ok(()),
+        MaterialKind::Mirror { reflectance } => colour(reflectance),
+        MaterialKind::Dielectric { interior_ior, exterior_ior } => iors(interior_ior, exterior_ior),
+        MaterialKind::RoughDielectric { alpha, interior_ior, exterior_ior }
+        | MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, .. } => {
+            roughness(alpha).and_then(|()| iors(interior_ior, exterior_ior))
+        }
+        MaterialKind::Conductor { eta, k, reflectance } => metal(eta, k, reflectance),
+        MaterialKind::RoughConductor { alpha, eta, k, reflectance } => {
+            roughness(alpha).and_then(|()| metal(eta, k, reflectance))
+        }
+    };
+    let texture = texture_of(&m.kind).map_or(Ok(()), |t| placement(t, "a material's texture"));
+    numbers.and(texture).map_err(|e| e.at(m.origin.clone()))
+}
+
+fn colour(c: Rgb) -> Result<(), Diagnostic> {
+    let error = || Diagnostic::error("a material's colour is negative or not finite");
+    c.is_valid().then_some(()).ok_or_else(error)
+}
+
+fn iors(interior: f32, exterior: f32) -> Result<(), Diagnostic> {
+    let fits = |ior: f32| (1.0 / MOST..=MOST).contains(&ior);
+    if fits(interior) && fits(exterior) && fits(interior / exterior) {
+        return Ok(());
+    }
+    let message =
+        format!("indices of refraction of {interior} inside and {exterior} outside cannot be rendered");
+    let hint =
+        format!("they and their ratio must lie between {:e} and {MOST:e}; glass has about 1.5", 1.0 / MOST);
+    Err(Diagnostic::error(message).hint(hint))
+}
+
+fn roughness(alpha: f32) -> Result<(), Diagnostic> {
+    if (0.0..=MOST).contains(&alpha) {
+        return Ok(());
+    }
+    let message = format!("a roughness of {alpha} cannot be rendered");
+    Err(Diagnostic::error(message)
+        .hint(format!("it must lie between 0 and {MOST:e}; 0.1 is brushed, 1 is dull")))
+}
+
+fn metal(eta: Rgb, k: Rgb, reflectance: Rgb) -> Result<(), Diagnostic> {
+    let fits = |c: Rgb| c.is_valid() && c.max_channel() <= MOST;
+    if fits(eta) && fits(k) {
+        return colour(reflectance);
+    }
+    let message = "a metal's index of refraction is negative, not finite or too large";
+    Err(Diagnostic::error(message).hint(format!("η and k must lie between 0 and {MOST:e}")))
+}
+
+/// How a texture lies on a surface. (Whether its colours are any is checked elsewhere.)
+fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic> {
+    let finite = |pair: &[f32; 2]| pair.iter().all(|x| x.is_finite());
+    let message = match texture {
+        Texture::Constant(_) => return Ok(()),
+        Texture::Checkerboard { delta, scale, .. }
+            if finite(delta) && finite(scale) && !scale.contains(&0.0) =>
+        {
+            return Ok(());
+        }
+        Texture::Checkerboard { .. } => {
+            "has fields whose size is zero or not finite, or whose offset is not finite"
+        }
+        Texture::Image { transform, .. } if finite(&transform.scale) && finite(&transform.offset) => {
+            return Ok(());
+        }
+        Texture::Image { .. } => "has a scale or an offset that is not finite",
+    };
+    Err(Diagnostic::error(format!("{what} {message}")))
+}
+
+fn filter(film: &FilmSettings) -> Result<(), Diagnostic> {
+    let radius = film.filter.radius();
+    let shape = match film.filter {
+        Filter::Box { .. } | Filter::Tent { .. } => true,
+        Filter::Gaussian { stddev, .. } => stddev > 0.0 && stddev.is_finite(),
+        Filter::Mitchell { b, c, .. } => b.is_finite() && c.is_finite(),
+    };
+    if radius > 0.0 && radius <= WIDEST_FILTER && shape {
+        return Ok(());
+    }
+    let hint = format!("its radius lies between 0 and {WIDEST_FILTER} pixels, and its parameters are finite");
+    Err(Diagnostic::error(format!("{:?} is no pixel filter", film.filter)).hint(hint))
+}
