@@ -4,6 +4,7 @@ use caustica_math::{Spectrum, Vec3};
 use caustica_scene::light::LightPoint;
 
 use super::{Junction, Sample};
+use crate::fault::{Fault, is_planted};
 use crate::kernel::Kernel;
 use crate::sink::Sink;
 use crate::strategy::Strategy;
@@ -70,6 +71,8 @@ impl Kernel<'_> {
                     let from = &sample.eye.vertices[t - 3];
                     if from.delta || !self.classes.next_event {
                         0.0
+                    } else if is_planted(Fault::EmissionForNextEvent) {
+                        h.of(pdf.point.0 / end.forward)
                     } else {
                         h.of(lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
                     }
