@@ -16,6 +16,7 @@ mod render;
 mod replay;
 mod snippet;
 mod tests;
+mod verify;
 mod video;
 
 use std::process::ExitCode;
@@ -34,6 +35,8 @@ fn main() -> ExitCode {
         }
         Err(e) => e.exit(),
     };
+    #[cfg(feature = "planted-fault")]
+    caustica::transport::fault::plant_from_environment();
     let Voice { json, quiet } = arguments.voice();
     let mut console = Console::new(json, quiet);
     let result = match arguments.command {
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         Command::Pyramid(a) => pyramid::run(&a, &mut console),
         Command::Video(a) => video::run(&a, &mut console),
         Command::Develop(a) => develop::run(&a, &console),
+        Command::Verify(a) => verify::run(&a, &mut console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),
     };

@@ -5,6 +5,9 @@ use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Crop;
 
+/// What is known of a block takes up to a quarter of a megabyte.
+const MOST_BLOCKS: usize = 1024;
+
 /// A picture's window, cut into square blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
@@ -15,9 +18,13 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The blocks of a scene's window.
+    /// The blocks of a scene's window: larger ones than asked for where there would be too many.
     pub fn new(scene: &Scene, block: u32) -> Self {
-        Self { window: scene.film.window(), block: block.max(1) }
+        let mut grid = Self { window: scene.film.window(), block: block.max(1) };
+        while grid.blocks() > MOST_BLOCKS {
+            grid.block *= 2;
+        }
+        grid
     }
 
     /// Pixels of the window.

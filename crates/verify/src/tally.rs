@@ -77,36 +77,69 @@ impl Sink for PictureSink<'_, '_> {
     }
 }
 
-/// Powers of contributions, by block: sums of values, of their squares and of their cubes (without sign).
+/// Sizes of contributions are told apart by factors of four, so many of them.
+pub const SIZES: usize = 48;
+
+/// Sums of contributions, of their squares and of their cubes (without sign).
+pub type Moments = [f64; 3];
+
+/// Contributions by block and by size.
 #[derive(Clone, Debug, Default)]
 pub struct Powers {
-    /// Sums of contributions.
-    pub sums: Vec<f64>,
-    /// Sums of squares.
-    pub squares: Vec<f64>,
-    /// Sums of cubes.
-    pub cubes: Vec<f64>,
+    moments: Vec<Moments>,
 }
 
 impl Powers {
-    fn new(blocks: usize) -> Self {
-        Self { sums: vec![0.0; blocks], squares: vec![0.0; blocks], cubes: vec![0.0; blocks] }
+    /// None yet.
+    pub fn new(blocks: usize) -> Self {
+        Self { moments: vec![[0.0; 3]; blocks * SIZES] }
     }
 
     /// Adds contributions that are `rarity` times as large and as rare as `value`.
     fn add(&mut self, block: usize, value: f64, rarity: f64) {
-        self.sums[block] += value;
-        self.squares[block] += value * value * rarity;
-        self.cubes[block] += (value * rarity).powi(2) * value.abs();
+        let size = value.abs() * rarity;
+        let exponent = (size.to_bits() >> 52) as i64 - 1023;
+        let bin = (exponent.div_euclid(2) + SIZES as i64 / 2).clamp(0, SIZES as i64 - 1);
+        let moments = &mut self.moments[block * SIZES + bin as usize];
+        moments[0] += value;
+        moments[1] += value.abs() * size;
+        moments[2] += value.abs() * size * size;
     }
 
     /// Adds others.
     pub fn merge(&mut self, other: &Self) {
-        let add = |a: &mut Vec<f64>, b: &Vec<f64>| a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
-        add(&mut self.sums, &other.sums);
-        add(&mut self.squares, &other.squares);
-        add(&mut self.cubes, &other.cubes);
+        self.moments.resize(other.moments.len().max(self.moments.len()), [0.0; 3]);
+        for (a, b) in self.moments.iter_mut().zip(&other.moments) {
+            add(a, b);
+        }
     }
+
+    /// The contributions to a block, from small to large.
+    pub fn of_block(&self, block: usize) -> &[Moments] {
+        &self.moments[block * SIZES..][..SIZES]
+    }
+
+    /// The sum of a block's contributions.
+    pub fn sum(&self, block: usize) -> f64 {
+        self.of_block(block).iter().map(|m| m[0]).sum()
+    }
+
+    /// The same in the larger blocks of a level.
+    pub fn merged(&self, grid: &Grid, level: usize) -> Self {
+        let [columns, rows] = grid.levels()[level];
+        let mut merged = Self::new((columns * rows) as usize);
+        for block in 0..grid.blocks() {
+            let larger = grid.ancestor(block, level) * SIZES;
+            for (a, b) in merged.moments[larger..][..SIZES].iter_mut().zip(self.of_block(block)) {
+                add(a, b);
+            }
+        }
+        merged
+    }
+}
+
+fn add(a: &mut Moments, b: &Moments) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
 }
 
 /// The light of a class of paths.
@@ -164,8 +197,7 @@ impl Learned {
     pub fn merge(&mut self, other: &Self) {
         self.picture.add(&other.picture);
         for (mask, powers) in &other.by_reach {
-            let blocks = powers.sums.len();
-            self.by_reach.entry(*mask).or_insert_with(|| Powers::new(blocks)).merge(powers);
+            self.by_reach.entry(*mask).or_default().merge(powers);
         }
         self.expected.iter_mut().zip(&other.expected).for_each(|(a, b)| a.merge(b));
         for (class, tally) in &other.classes {

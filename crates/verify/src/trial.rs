@@ -6,12 +6,15 @@
 //! multiple importance sampling tell how often each estimator would have found it, and how bright it would have
 //! been. From that follow the variance and the skewness that the estimator must be expected to have. Where the skewness
 //! is large, the expected variance counts if it is the larger one, and where few contributions decide, nothing is
-//! tested at all.
+//! tested at all. The largest contributions may be left out of account, if all of them together are a small part of the
+//! light: then a difference as large as that part proves nothing. (If one of them turns up, the replicates tell.)
 //!
 //! What skewness is left is allowed for by the transformation of Hall ("On the Removal of Skewness by Transformation",
 //! Journal of the Royal Statistical Society B 54, 1992), in whichever direction makes differences less significant.
 
 use caustica_math::stats::t_p_value;
+
+use crate::tally::Moments;
 
 /// One side of a test: the mean over replicates with what is known of its spread.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,18 +24,24 @@ pub struct Side {
     /// The variance of the mean.
     pub variance: f64,
     /// The third central moment of the mean, without its sign.
-    pub third: f64,
+    third: f64,
+    /// The larger of the variances that were seen and expected.
+    largest: f64,
+    /// How much light is left out of account.
+    dropped: f64,
     /// Replicates.
     count: usize,
 }
 
-/// The variance and third moment of a mean that are expected of independent contributions.
+/// What is expected of the mean of independent contributions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Expected {
     /// The variance.
     pub variance: f64,
     /// The third central moment.
     pub third: f64,
+    /// How much light is left out of account.
+    pub dropped: f64,
 }
 
 /// Up to this skewness of the mean, replicates tell its variance well.
@@ -41,28 +50,51 @@ const TAME: f64 = 0.1;
 /// Beyond this skewness of the mean, too few contributions decide: those of eight equal ones have it.
 const TOO_SKEWED: f64 = 0.35;
 
+/// The largest part of a block's light that may be left out of account.
+const DROPPED: f64 = 0.02;
+
+impl Expected {
+    /// Of contributions by size, from small to large, found in so many passes of another run (`found`), for the mean of
+    /// `passes` passes.
+    pub fn new(sizes: &[Moments], found: f64, passes: f64) -> Self {
+        let mean: f64 = sizes.iter().map(|m| m[0]).sum();
+        let mut all = [0.0; 3];
+        sizes.iter().for_each(|m| all.iter_mut().zip(m).for_each(|(a, b)| *a += b));
+        let expected = |[_, squares, cubes]: Moments, dropped: f64| Self {
+            variance: squares / (found * passes),
+            third: cubes / (found * passes * passes),
+            dropped: dropped / found,
+        };
+        let mut dropped = 0.0;
+        for size in sizes.iter().rev() {
+            let now = expected(all, dropped);
+            if now.third <= TAME * now.variance.powf(1.5) || dropped + size[0].abs() > DROPPED * mean.abs() {
+                return now;
+            }
+            dropped += size[0].abs();
+            all.iter_mut().zip(size).for_each(|(a, b)| *a = (*a - b).max(0.0));
+        }
+        expected(all, dropped)
+    }
+}
+
 impl Side {
     /// Of the values of replicates, and of what is expected.
     pub fn new(values: &[f64], expected: Expected) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let central = |power: i32| values.iter().map(|v| (v - mean).powi(power)).sum::<f64>();
-        let mut variance = central(2) / ((n - 1.0).max(1.0) * n);
+        let seen = central(2) / ((n - 1.0).max(1.0) * n);
         let third = (central(3) / (n * n * n)).abs().max(expected.third);
-        if expected.third > TAME * expected.variance.powf(1.5) {
-            variance = variance.max(expected.variance);
-        }
-        Self { mean, variance, third, count: values.len() }
-    }
-
-    /// The skewness of the mean.
-    pub fn skewness(&self) -> f64 {
-        if self.third == 0.0 { 0.0 } else { self.third / self.variance.powf(1.5) }
+        let largest = seen.max(expected.variance);
+        let tame = expected.third <= TAME * expected.variance.powf(1.5);
+        let variance = if tame { seen } else { largest };
+        Self { mean, variance, third, largest, dropped: expected.dropped, count: values.len() }
     }
 
     /// Whether so few contributions decide that nothing can be tested.
     pub fn is_too_skewed(&self) -> bool {
-        !(self.skewness() <= TOO_SKEWED)
+        self.third > TOO_SKEWED * self.largest.powf(1.5)
     }
 }
 
@@ -88,8 +120,10 @@ pub fn compare(estimate: &Side, reference: &Side) -> Option<Trial> {
     let (a, b) = (estimate.variance + floor, reference.variance);
     let variance = a + b;
     let difference = estimate.mean - reference.mean;
-    let raw = difference.abs() / variance.sqrt();
-    let skewness = (estimate.third + reference.third) / variance.powf(1.5);
+    let unexplained = (difference.abs() - estimate.dropped - reference.dropped).max(0.0);
+    let raw = if unexplained > 0.0 { unexplained / variance.sqrt() } else { 0.0 };
+    let largest = estimate.largest + reference.largest + floor;
+    let skewness = if largest > 0.0 { (estimate.third + reference.third) / largest.powf(1.5) } else { 0.0 };
     let t = tempered(raw, skewness);
     let degrees = |v: f64, n: usize| v * v / n.saturating_sub(1).max(1) as f64;
     // Welch–Satterthwaite.
@@ -128,10 +162,13 @@ mod tests {
         let reference = side(&[1.0; REPLICATES]);
         // Of a hundred equal contributions not one was found; of four, that may be.
         let nothing = |hits: f64| {
-            Side::new(&[0.0; REPLICATES], Expected { variance: 1.0 / hits, third: 1.0 / (hits * hits) })
+            let expected = Expected { variance: 1.0 / hits, third: 1.0 / (hits * hits), dropped: 0.0 };
+            Side::new(&[0.0; REPLICATES], expected)
         };
-        let trial = compare(&nothing(100.0), &reference).unwrap();
-        assert!(trial.p < 1e-5 && trial.t < 0.0, "{trial:?}");
+        for hits in [60.0, 100.0, 1e4] {
+            let trial = compare(&nothing(hits), &reference).unwrap();
+            assert!(trial.p < 1e-5 && trial.t < 0.0, "{hits}: {trial:?}");
+        }
         assert_eq!(compare(&nothing(4.0), &reference), None);
         // A firefly alone proves nothing either.
         let mut firefly = [0.0; REPLICATES];
@@ -149,7 +186,7 @@ mod tests {
         let size = |u: f64| libm::pow(10.0, decades * (u * u * u - 0.5));
         let moment = |power: i32| (0..4000).map(|i| size((i as f64 + 0.5) / 4000.0).powi(power)).sum::<f64>() / 4000.0;
         let n = REPLICATES as f64;
-        let expected = Expected { variance: mean * moment(2) / n, third: mean * moment(3) / (n * n) };
+        let expected = Expected { variance: mean * moment(2) / n, third: mean * moment(3) / (n * n), dropped: 0.0 };
         let truth = side(&[mean * moment(1); REPLICATES]);
         let (mut alarms, mut tests) = (0, 0);
         for _ in 0..20_000 {

@@ -11,7 +11,7 @@ use crate::estimator::Estimator;
 use crate::grid::Grid;
 use crate::jobs;
 use crate::outcome::{ClassShare, Finding, Outcome, Tested};
-use crate::tally::{Learned, Picture, PictureSink, Probe};
+use crate::tally::{Learned, Picture, PictureSink, Powers, Probe};
 use crate::trial::{Expected, Side, compare};
 
 /// How a scene is verified.
@@ -180,7 +180,7 @@ impl Run<'_> {
             for (i, values) in values.iter_mut().enumerate() {
                 let mut sums = vec![0.0; self.grid.blocks()];
                 for (_, powers) in learned.by_reach.iter().filter(|(mask, _)| *mask >> i & 1 != 0) {
-                    sums.iter_mut().zip(&powers.sums).for_each(|(a, b)| *a += b / f64::from(passes));
+                    sums.iter_mut().enumerate().for_each(|(b, s)| *s += powers.sum(b) / f64::from(passes));
                 }
                 values.push(sums);
             }
@@ -230,18 +230,9 @@ impl Run<'_> {
     ) -> Tested {
         let own = f64::from(self.replicates * self.passes);
         let theirs = own * f64::from(REFERENCE);
-        let mut spread = vec![[0.0; 4]; self.grid.blocks()];
-        let expected = &learned.expected[index];
-        let reached = learned.by_reach.iter().filter(|(mask, _)| *mask >> index & 1 != 0);
-        for (block, spread) in spread.iter_mut().enumerate() {
-            spread[0] = expected.squares[block] / theirs / own;
-            spread[1] = expected.cubes[block] / theirs / (own * own);
-        }
-        for (_, powers) in reached {
-            for (block, spread) in spread.iter_mut().enumerate() {
-                spread[2] += powers.squares[block] / (theirs * theirs);
-                spread[3] += powers.cubes[block] / (theirs * theirs * theirs);
-            }
+        let mut found = Powers::new(self.grid.blocks());
+        for (_, powers) in learned.by_reach.iter().filter(|(mask, _)| *mask >> index & 1 != 0) {
+            found.merge(powers);
         }
         let mut findings = Vec::new();
         for level in 0..self.grid.levels().len() {
@@ -249,16 +240,15 @@ impl Run<'_> {
                 all.iter().map(|sums| self.grid.merged(sums, level)).collect()
             };
             let (values, reference) = (merged(&rendered.values), merged(&references[index]));
-            let part = |i: usize| {
-                let column: Vec<f64> = spread.iter().map(|s| s[i]).collect();
-                self.grid.merged(&column, level)
-            };
-            let parts = [part(0), part(1), part(2), part(3)];
-            let blocks = (0..parts[0].len()).map(|b| {
+            let expected = learned.expected[index].merged(&self.grid, level);
+            let found = found.merged(&self.grid, level);
+            let [columns, rows] = self.grid.levels()[level];
+            let blocks = (0..(columns * rows) as usize).map(|b| {
                 let column = |all: &[Vec<f64>]| -> Vec<f64> { all.iter().map(|v| v[b]).collect() };
-                let of = |v: usize, t: usize| Expected { variance: parts[v][b], third: parts[t][b] };
-                let estimate = Side::new(&column(&values), of(0, 1));
-                let reference = Side::new(&column(&reference), of(2, 3));
+                let estimate = Expected::new(expected.of_block(b), theirs, own);
+                let estimate = Side::new(&column(&values), estimate);
+                let reference_spread = Expected::new(found.of_block(b), theirs, theirs);
+                let reference = Side::new(&column(&reference), reference_spread);
                 Finding { trial: compare(&estimate, &reference), estimate, reference }
             });
             findings.push(blocks.collect());
