@@ -43,6 +43,8 @@ pub enum Command {
     Video(Video),
     /// Test that all integrators and strategies agree on a scene, as far as each can reach its light
     Verify(Verify),
+    /// Tell why a part of a picture is black or noisy: which paths carry its light, and who reaches them
+    Explain(Explain),
     /// Make a picture from a rendered OpenEXR file, with or without its light image
     Develop(Develop),
     /// Tell what a scene file holds
@@ -60,6 +62,7 @@ impl Arguments {
             Command::Pyramid(a) => a.voice,
             Command::Video(a) => a.clip().voice,
             Command::Verify(a) => a.voice,
+            Command::Explain(a) => a.voice,
             Command::Info(a) => Voice { json: a.json, quiet: false },
             Command::Test(a) => Voice { json: a.json, quiet: false },
             Command::Develop(_) => Voice { json: false, quiet: false },
@@ -196,7 +199,7 @@ pub struct Verify {
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Samples per pixel of each estimator; the reference has twice as many
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(8..))]
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..))]
     pub spp: u32,
     /// Edge of the blocks that are compared, in pixels; larger ones are made of these
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -204,6 +207,27 @@ pub struct Verify {
     /// Probability that any test of the run finds a difference where there is none
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = parse_probability)]
     pub significance: f64,
+    #[command(flatten)]
+    pub sampling: Sampling,
+    #[command(flatten)]
+    pub voice: Voice,
+}
+
+#[derive(Debug, Args)]
+pub struct Explain {
+    #[command(flatten)]
+    pub source: Source,
+    /// The part of the picture to explain, in pixels from the upper left [default: all of it]. The picture is at most 96
+    /// pixels long unless --resolution says otherwise
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = parse_crop)]
+    pub region: Option<Crop>,
+    /// The integrator whose picture is to be explained: bdpt, path, path_ems, naive or light
+    #[arg(long, value_name = "NAME", default_value = "bdpt", hide_possible_values = true,
+        value_parser = ["bdpt", "path", "path_ems", "naive", "light"])]
+    pub integrator: String,
+    /// Samples per pixel that are looked at
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: u32,
     #[command(flatten)]
     pub sampling: Sampling,
     #[command(flatten)]

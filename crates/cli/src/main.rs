@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod console;
 mod develop;
+mod explain;
 mod failure;
 mod info;
 mod interrupt;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Command::Video(a) => video::run(&a, &mut console),
         Command::Develop(a) => develop::run(&a, &console),
         Command::Verify(a) => verify::run(&a, &mut console),
+        Command::Explain(a) => explain::run(&a, &mut console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),
     };

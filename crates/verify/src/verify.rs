@@ -31,7 +31,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { settings: Settings::default(), samples: 256, block: 8, significance: 0.01, threads: None }
+        Self { settings: Settings::default(), samples: 128, block: 8, significance: 0.01, threads: None }
     }
 }
 
