@@ -53,7 +53,8 @@ pub fn run(args: &Verify, console: &mut Console) -> Result<ExitCode, Failure> {
     };
     let outcome = measure(&scene, &options, console)?;
     let title = format!("{}: do all integrators agree?", args.source.name());
-    let mut told = verification(&outcome, (&title, &args.source.name()), notes(&args.source, &args.sampling, &scene));
+    let mut told =
+        verification(&outcome, (&title, &args.source.name()), notes(&args.source, &args.sampling, &scene));
     save(&outcome, &mut told, (&folder, &files[0]))?;
     let outputs = files.iter().map(|f| f.display().to_string()).collect();
     let told = Told { agrees: outcome.agrees(), outputs, verification: &told };
@@ -90,21 +91,22 @@ impl From<VerifyError> for Failure {
 pub fn notes(source: &Source, sampling: &Sampling, scene: &Scene) -> Vec<(String, String)> {
     let window = scene.film.window();
     let threads = source.threads.map_or_else(available_threads, usize::from);
-    let mut notes: Vec<(String, String)> = [
-        ("size", format!("{} × {} pixels", window.width, window.height)),
-        ("threads", threads.to_string()),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into();
+    let mut notes: Vec<(String, String)> =
+        [("size", format!("{} × {} pixels", window.width, window.height)), ("threads", threads.to_string())]
+            .map(|(name, value)| (name.to_owned(), value))
+            .into();
     notes.extend(sampling.notes());
     notes
 }
 
-fn save(outcome: &Outcome, told: &mut Verification, (folder, heat): (&Path, &PathBuf)) -> Result<(), Failure> {
-    let unwritable = |e: &dyn std::fmt::Display| Failure::Output(format!("cannot write `{}`: {e}", heat.display()));
-    heat_map(outcome, &told.title)
-        .and_then(|canvas| canvas.write_png(heat))
-        .map_err(|e| unwritable(&e))?;
+fn save(
+    outcome: &Outcome,
+    told: &mut Verification,
+    (folder, heat): (&Path, &PathBuf),
+) -> Result<(), Failure> {
+    let unwritable =
+        |e: &dyn std::fmt::Display| Failure::Output(format!("cannot write `{}`: {e}", heat.display()));
+    heat_map(outcome, &told.title).and_then(|canvas| canvas.write_png(heat)).map_err(|e| unwritable(&e))?;
     told.heat_map = fs::read(heat).map_err(|e| unwritable(&e))?;
     write_verification(told, folder).map_err(|e| report_failure(folder, e))
 }
@@ -128,7 +130,11 @@ fn summary(told: &Told<'_>) -> String {
     }
     text += "\nWhat carries the light here, and who misses it:\n";
     for p in &told.verification.patterns {
-        let missed = if p.missed_by.is_empty() { "reached by all".to_owned() } else { format!("missed by {}", p.missed_by.join(", ")) };
+        let missed = if p.missed_by.is_empty() {
+            "reached by all".to_owned()
+        } else {
+            format!("missed by {}", p.missed_by.join(", "))
+        };
         text += &format!("  {:<16} {:>6} from {}: {missed}\n", p.pattern, percent(p.share), p.lamp);
     }
     text += &format!("\n{}\n", told.verification.verdict);

@@ -108,10 +108,19 @@ struct Row<'a> {
 
 impl<'a> Row<'a> {
     fn new(e: &'a Estimated) -> Self {
-        let missed: Vec<String> =
-            e.missed.iter().take(4).map(|(pattern, share)| format!("{pattern} {}", percent(*share))).collect();
+        let missed: Vec<String> = e
+            .missed
+            .iter()
+            .take(4)
+            .map(|(pattern, share)| format!("{pattern} {}", percent(*share)))
+            .collect();
         let p = if e.tests > 0 { format!("{:.1e}", e.smallest_p) } else { "–".to_owned() };
-        Self { e, missed: if missed.is_empty() { "–".to_owned() } else { missed.join(", ") }, p, untested: percent(e.untested) }
+        Self {
+            e,
+            missed: if missed.is_empty() { "–".to_owned() } else { missed.join(", ") },
+            p,
+            untested: percent(e.untested),
+        }
     }
 }
 
@@ -227,11 +236,19 @@ mod tests {
     #[test]
     fn a_page_tells_all() {
         let page = verification_page(&verification()).unwrap();
-        for text in ["id=\"image-0\"", "id=\"reference\"", "All agree.", "LDS+E 25 %", "4.0e-4", "data:image/png;base64,cGlj"] {
+        for text in [
+            "id=\"image-0\"",
+            "id=\"reference\"",
+            "All agree.",
+            "LDS+E 25 %",
+            "4.0e-4",
+            "data:image/png;base64,cGlj",
+        ] {
             assert!(page.contains(text), "{text}");
         }
         assert!(!page.contains("<b>scene"));
-        let json: serde_json::Value = serde_json::from_str(&verification_json(&verification()).unwrap()).unwrap();
+        let json: serde_json::Value =
+            serde_json::from_str(&verification_json(&verification()).unwrap()).unwrap();
         assert_eq!(json["estimators"][0]["missed"][0][0], "LDS+E");
         assert!(json.get("heat_map").is_none() && json["estimators"][0].get("picture").is_none());
     }

@@ -36,13 +36,21 @@ pub fn rows() -> Vec<Row> {
 fn shading_and_weights() -> Vec<Row> {
     let grey = MaterialKind::Diffuse { albedo: Rgb::splat(0.8).into() };
     vec![
-        row("shading normals: light walks lack the adjoint factor", "pbrt-v4 #385, #526, #13; pbrt-v3 #94", leaning_normals(grey)),
+        row(
+            "shading normals: light walks lack the adjoint factor",
+            "pbrt-v4 #385, #526, #13; pbrt-v3 #94",
+            leaning_normals(grey),
+        ),
         row("the same on rough glass", "pbrt-v4 #385", leaning_normals(rough_glass_kind())),
         row("weights with specular chains", "pbrt-v4 #326", specular_chains()),
         row("next-event and emission densities mixed up", "found by reading", unequal_lamps()),
         row("single-strategy images black or wrong", "pbrt-v4 #299", ball(plastic_kind())),
         row("roulette missing from the weights", "measured on LuxCore BIDIR 2.11", long_paths()),
-        row("black through glass, light lost behind glass", "mitsuba3 #181, #916; pbrt-v3 #197; pbrt-v4 #228", bulb()),
+        row(
+            "black through glass, light lost behind glass",
+            "mitsuba3 #181, #916; pbrt-v3 #197; pbrt-v4 #228",
+            bulb(),
+        ),
         row("nested interfaces", "mitsuba3 #181", nested_interfaces()),
         row("caustics only with flipped normals", "BlendLuxCore #758", caster(true)),
         row("negative scale with vertex normals, lamps that flip", "pbrt-v3 #229", mirrored(true)),
@@ -78,10 +86,18 @@ fn cameras_and_films() -> Vec<Row> {
     vec![
         row("thin lens: splats miss vignetting or lens density", "pbrt-v4 #458", lamp_out_of_focus()),
         row("crop window: splats normalised differently", "pbrt-v4 #347", cropped),
-        row("orthographic cameras abort or are refused", "pbrt-v4 #279; LuxCore #667", with(CameraKind::Orthographic)),
+        row(
+            "orthographic cameras abort or are refused",
+            "pbrt-v4 #279; LuxCore #667",
+            with(CameraKind::Orthographic),
+        ),
         row("360° cameras abort or are refused", "mitsuba3 #198", around),
         row("the pixel filter is ignored by light tracing", "LuxCore #413", filtered),
-        row("the same seed on every thread", "SORT #35; mitsuba #184; LuxCore #255", ball(rough_glass_kind())),
+        row(
+            "the same seed on every thread",
+            "SORT #35; mitsuba #184; LuxCore #255",
+            ball(rough_glass_kind()),
+        ),
     ]
 }
 

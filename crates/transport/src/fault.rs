@@ -11,8 +11,8 @@ pub enum Fault {
     Adjoint,
     /// The two densities of scattering are mixed up in weights.
     SwappedDensities,
-    /// Hits are weighed as if next-event estimation chose points as emission does.
-    EmissionForNextEvent,
+    /// Hits are weighed as if next-event estimation were half as likely as it is.
+    NextEventDensity,
     /// Weights of the light image forget how many light paths a pass has.
     LightPaths,
     /// What survives roulette does not make up for what did not.
@@ -29,7 +29,7 @@ impl Fault {
     pub const ALL: [(&'static str, Self); 7] = [
         ("adjoint", Self::Adjoint),
         ("swapped-densities", Self::SwappedDensities),
-        ("emission-for-next-event", Self::EmissionForNextEvent),
+        ("next-event-density", Self::NextEventDensity),
         ("light-paths", Self::LightPaths),
         ("roulette", Self::Roulette),
         ("lamp-cosine", Self::LampCosine),

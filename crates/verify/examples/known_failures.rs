@@ -13,7 +13,9 @@ use caustica_verify::{Options, Verdict, verify};
 const SAMPLES: u32 = 512;
 
 fn main() -> ExitCode {
-    println!("| what goes wrong elsewhere | told of in | estimators that agree | too noisy | tests | smallest p | mismatches |");
+    println!(
+        "| what goes wrong elsewhere | told of in | estimators that agree | too noisy | tests | smallest p | mismatches |"
+    );
     println!("|---|---|--:|--:|--:|--:|--:|");
     let mut all = 0;
     for row in rows() {

@@ -34,7 +34,8 @@ impl Estimator {
             Heuristic::Balance => (Heuristic::Power, "bdpt, power heuristic"),
             Heuristic::Power => (Heuristic::Balance, "bdpt, balance heuristic"),
         };
-        let whole = Settings { integrator: Integrator::Bdpt, strategies: StrategySet::default(), ..base.clone() };
+        let whole =
+            Settings { integrator: Integrator::Bdpt, strategies: StrategySet::default(), ..base.clone() };
         let weighed = Settings { heuristic: other.0, ..whole.clone() };
         let mut all = vec![
             Self::new("bdpt", "all that any strategy reaches", whole.clone(), "all"),
@@ -49,7 +50,12 @@ impl Estimator {
         }
         let path = "s=0;s=1&t>=2";
         for (name, integrator, set, reach) in [
-            ("path", Integrator::Path(Technique::Mis), path, "lamps that eye paths hit, and D next to the lamp"),
+            (
+                "path",
+                Integrator::Path(Technique::Mis),
+                path,
+                "lamps that eye paths hit, and D next to the lamp",
+            ),
             ("path_ems", Integrator::Path(Technique::Emitters), path, "as path"),
             ("naive", Integrator::Path(Technique::Materials), "s=0", "lamps that eye paths hit"),
             ("light", Integrator::Light, "t=1", "D next to the camera, and lamps in view"),

@@ -14,7 +14,7 @@ const DARK: [f64; 3] = [33.0, 102.0, 172.0];
 const FRAME: Colour = [178, 24, 43];
 /// The two greys of what could not be tested.
 const UNTESTED: [Colour; 2] = [[150, 150, 150], [172, 172, 172]];
-const BLACK: Colour = [28, 28, 30];
+const BLACK: Colour = [72, 74, 82];
 
 /// The longest side of a map in pixels.
 const SIDE: u32 = 288;

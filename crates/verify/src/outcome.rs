@@ -102,7 +102,8 @@ impl Tested {
         let light = |b: usize| self.findings[0][b].reference.mean.abs();
         let blocks = 0..self.findings[0].len();
         let total: f64 = blocks.clone().map(light).sum();
-        let untested = blocks.filter(|b| self.trial_of(grid, *b).is_none()).map(light).fold(0.0, |a, b| a + b);
+        let untested =
+            blocks.filter(|b| self.trial_of(grid, *b).is_none()).map(light).fold(0.0, |a, b| a + b);
         self.untested = if total > 0.0 { untested / total } else { 0.0 };
         let whole = self.whole();
         let black = whole.reference.mean == 0.0 && whole.estimate.mean == 0.0;

@@ -21,7 +21,10 @@ pub fn verification(
             ("samples a pixel", format!("{}, reference {}", outcome.samples, outcome.reference_samples)),
             ("replicates", outcome.replicates.to_string()),
             ("blocks", format!("{0} × {0} pixels, merged up to the whole picture", outcome.grid.block)),
-            ("significance", format!("{} for all tests together, {:.1e} each", outcome.significance, outcome.level)),
+            (
+                "significance",
+                format!("{} for all tests together, {:.1e} each", outcome.significance, outcome.level),
+            ),
         ]
         .map(|(name, value)| (name.to_owned(), value)),
     );
@@ -90,11 +93,10 @@ fn estimated(outcome: &Outcome, index: usize, tested: &Tested) -> Estimated {
 /// A verdict in words.
 fn words(tested: &Tested) -> String {
     match tested.verdict {
-        Verdict::Mismatch if tested.picture.invalid > 0 => format!("{} values are no numbers", tested.picture.invalid),
-        Verdict::Mismatch => "differs".to_owned(),
-        Verdict::Agrees if tested.untested > 0.0005 => {
-            format!("agrees; {:.1} % too noisy to test", 100.0 * tested.untested)
+        Verdict::Mismatch if tested.picture.invalid > 0 => {
+            format!("{} values are no numbers", tested.picture.invalid)
         }
+        Verdict::Mismatch => "differs".to_owned(),
         Verdict::Agrees => "agrees".to_owned(),
         Verdict::TooNoisy => "too noisy to test".to_owned(),
         Verdict::NothingToReach => "reaches no light here".to_owned(),

@@ -184,9 +184,11 @@ mod tests {
         let mut stream = SampleStream::new(StreamId { seed: 9, pixel: 0, sample: 0, walk: mean as u32 });
         let mut uniform = || f64::from(stream.next_1d());
         let size = |u: f64| libm::pow(10.0, decades * (u * u * u - 0.5));
-        let moment = |power: i32| (0..4000).map(|i| size((i as f64 + 0.5) / 4000.0).powi(power)).sum::<f64>() / 4000.0;
+        let moment =
+            |power: i32| (0..4000).map(|i| size((i as f64 + 0.5) / 4000.0).powi(power)).sum::<f64>() / 4000.0;
         let n = REPLICATES as f64;
-        let expected = Expected { variance: mean * moment(2) / n, third: mean * moment(3) / (n * n), dropped: 0.0 };
+        let expected =
+            Expected { variance: mean * moment(2) / n, third: mean * moment(3) / (n * n), dropped: 0.0 };
         let truth = side(&[mean * moment(1); REPLICATES]);
         let (mut alarms, mut tests) = (0, 0);
         for _ in 0..20_000 {
@@ -213,7 +215,10 @@ mod tests {
     fn skewed_data_give_no_more_false_alarms_than_stated() {
         for (mean, decades) in [(0.3, 0.0), (0.5, 2.0), (2.0, 2.0), (2.0, 4.0), (8.0, 3.0), (20.0, 1.0)] {
             let (alarms, tests) = false_alarms(mean, decades, 1e-3);
-            assert!(f64::from(alarms) <= 20.0 + 20.0 * f64::from(tests) / 20_000.0, "{mean}, {decades}: {alarms} of {tests}");
+            assert!(
+                f64::from(alarms) <= 20.0 + 20.0 * f64::from(tests) / 20_000.0,
+                "{mean}, {decades}: {alarms} of {tests}"
+            );
         }
         // Most of the tame ones are tested.
         let (_, tests) = false_alarms(20.0, 1.0, 1e-3);

@@ -161,8 +161,12 @@ impl Run<'_> {
             };
             let kernel = Kernel::new(self.scene, settings);
             let mut scratch = Scratch::default();
-            let render =
-                PictureSink { kernel: &kernel, grid: self.grid, picture: Picture::new(&self.grid), pixel: [0; 2] };
+            let render = PictureSink {
+                kernel: &kernel,
+                grid: self.grid,
+                picture: Picture::new(&self.grid),
+                pixel: [0; 2],
+            };
             let learned = Learned::new(&self.grid, estimators.len());
             let mut probe =
                 Probe { render, learned, estimators, parallel: self.is_parallel(), parts: Vec::new() };
@@ -200,8 +204,12 @@ impl Run<'_> {
             let settings = Settings { seed: self.seed(index, replicate), ..estimator.settings.clone() };
             let kernel = Kernel::new(self.scene, settings);
             let mut scratch = Scratch::default();
-            let mut sink =
-                PictureSink { kernel: &kernel, grid: self.grid, picture: Picture::new(&self.grid), pixel: [0; 2] };
+            let mut sink = PictureSink {
+                kernel: &kernel,
+                grid: self.grid,
+                picture: Picture::new(&self.grid),
+                pixel: [0; 2],
+            };
             for pass in 0..self.passes {
                 for pixel in self.grid.each_pixel() {
                     sink.pixel = pixel;
@@ -289,7 +297,9 @@ pub fn shrink(film: &mut FilmSettings, side: u32) {
     if longest <= side {
         return;
     }
-    let scaled = |n: u32| ((u64::from(n) * u64::from(side) + u64::from(longest) / 2) / u64::from(longest)).max(1) as u32;
+    let scaled = |n: u32| {
+        ((u64::from(n) * u64::from(side) + u64::from(longest) / 2) / u64::from(longest)).max(1) as u32
+    };
     (film.width, film.height) = (scaled(film.width), scaled(film.height));
     film.crop = None;
 }

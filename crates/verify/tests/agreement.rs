@@ -1,12 +1,12 @@
 //! Scenes on which all estimators agree, and what is told of their reach.
 
+use caustica_math::Rgb;
 use caustica_render::Control;
 use caustica_scene::description::LightKind;
-use caustica_math::Rgb;
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::scenes;
-use caustica_verify::{Options, Outcome, Verdict, VerifyError, verify};
 use caustica_transport::Settings;
+use caustica_verify::{Options, Outcome, Verdict, VerifyError, verify};
 
 fn options(samples: u32, seed: u64) -> Options {
     let settings = Settings { seed, max_depth: Some(8), ..Settings::default() };

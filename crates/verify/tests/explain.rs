@@ -52,7 +52,13 @@ fn ball_in_a_mirror(lamp: impl FnOnce(&mut Description)) -> Description {
 #[test]
 fn light_that_no_strategy_reaches_is_estimated_and_named() {
     let point = ball_in_a_mirror(|d| point_light(d, [0.0, 2.5, 0.5], 2.0));
-    let words = ["is missing: LS+DS+E", "the point light at (0, 2.5, 0.5)", "smooth glass `crystal`", "mirror `looking glass`", "Give the lamp a size"];
+    let words = [
+        "is missing: LS+DS+E",
+        "the point light at (0, 2.5, 0.5)",
+        "smooth glass `crystal`",
+        "mirror `looking glass`",
+        "Give the lamp a size",
+    ];
     let answer = says(point, to(8), &words);
     let missing: f64 = answer.missing.iter().filter(|m| m.pattern == "LS+DS+E").map(|m| m.share).sum();
     // The same with a lamp of a size: power 4π·2 = π·L·4πr².
@@ -66,7 +72,8 @@ fn light_that_no_strategy_reaches_is_estimated_and_named() {
     let question = Question { region: None, settings: to(8), samples: 1024, threads: None, names: &names };
     let truth = explain(&flatten(sized), &question, &Control::default(), |_| ()).unwrap();
     // Lamps seen in mirrors are light that a point does not have.
-    let share = |pattern: &str| truth.rows.iter().filter(|r| r.pattern == pattern).map(|r| r.light).sum::<f64>();
+    let share =
+        |pattern: &str| truth.rows.iter().filter(|r| r.pattern == pattern).map(|r| r.light).sum::<f64>();
     let expected = share("LS+DS+E") / (1.0 - share("LS+E") - share("LE"));
     println!("{missing} against {expected}");
     assert!(missing > 0.5 * expected && missing < 2.0 * expected, "{missing} against {expected}");
@@ -169,7 +176,8 @@ fn answers_do_not_depend_on_threads() {
     let names: Vec<String> = d.shapes.iter().map(|s| s.name.clone()).collect();
     let scene = flatten(d);
     let run = |threads| {
-        let question = Question { region: None, settings: to(6), samples: 16, threads: Some(threads), names: &names };
+        let question =
+            Question { region: None, settings: to(6), samples: 16, threads: Some(threads), names: &names };
         let answer = explain(&scene, &question, &Control::default(), |_| ()).unwrap();
         format!("{answer:?}")
     };

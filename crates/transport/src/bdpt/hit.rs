@@ -71,10 +71,9 @@ impl Kernel<'_> {
                     let from = &sample.eye.vertices[t - 3];
                     if from.delta || !self.classes.next_event {
                         0.0
-                    } else if is_planted(Fault::EmissionForNextEvent) {
-                        h.of(pdf.point.0 / end.forward)
                     } else {
-                        h.of(lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
+                        let share = if is_planted(Fault::NextEventDensity) { 0.5 } else { 1.0 };
+                        h.of(share * lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
                     }
                 };
                 let further = h.of(pdf.point.0) * h.of(pdf.direction.0) * end.sums.past;

@@ -102,7 +102,8 @@ impl Kernel<'_> {
         };
         let Scratch { eye, light, densities, weights, candidates } = scratch;
         let (densities, weights) = (RefCell::new(densities), RefCell::new(weights));
-        let sample = Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities, weights };
+        let sample =
+            Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities, weights };
         let mut sum = Spectrum::ZERO;
         if classes.hit {
             sum += self.hits(&sample, sink);

@@ -197,11 +197,14 @@ fn gather_at(
     for offset in 0..27 {
         let key = [cx + offset % 3 - 1, cy + offset / 3 % 3 - 1, cz + offset / 9 - 1];
         for p in cells.get(&key).into_iter().flatten() {
-            let apart = p.at.distance_squared(z.point.position) > near * near || p.normal.dot(z.point.normal) < 0.7;
+            let apart =
+                p.at.distance_squared(z.point.position) > near * near || p.normal.dot(z.point.normal) < 0.7;
             if apart || p.vertices.len() + i + 1 > limit {
                 continue;
             }
-            let Some(scatter) = z.scatter(caustica_scene::bsdf::Walk::FromCamera, p.to_light) else { continue };
+            let Some(scatter) = z.scatter(caustica_scene::bsdf::Walk::FromCamera, p.to_light) else {
+                continue;
+            };
             let value = z.throughput * scatter.value * p.flux * (1.0 / z.cos(p.to_light).max(1e-6));
             let chain = p.vertices.iter().copied().chain(std::iter::repeat_n(false, i));
             let class = PathClass::new(LampEnd::Dirac, chain);

@@ -113,7 +113,12 @@ fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
         let own: f64 = classes.iter().map(|(_, c): &(_, &Carried)| c.tally.squares).sum();
         let reached = |e: &Estimator| classes.iter().all(|(c, _)| e.reaches(c, parallel));
         let misses = |name: &str| estimators.iter().find(|e| e.name == name).is_some_and(|e| !reached(e));
-        let sets = [("s=0", "bdpt, s=0"), ("s=1", "bdpt, s=1&t>=2"), ("t=1", "bdpt, t=1"), ("inner", "bdpt, s>=2&t>=2")];
+        let sets = [
+            ("s=0", "bdpt, s=0"),
+            ("s=1", "bdpt, s=1&t>=2"),
+            ("t=1", "bdpt, t=1"),
+            ("inner", "bdpt, s>=2&t>=2"),
+        ];
         let makes = |(_, name): &(&str, &str)| {
             let makes = |e: &Estimator| classes.iter().any(|(c, _)| e.reaches(c, parallel));
             estimators.iter().find(|e| e.name == *name).is_some_and(makes)

@@ -92,7 +92,8 @@ impl Survey {
         };
         let kernel = Kernel::new(scene, settings.clone());
         // What surfaces do is to be seen without roulette.
-        let looking = Kernel::new(scene, Settings { roulette_start: Some(u32::MAX), max_depth: Some(3), ..settings });
+        let looking =
+            Kernel::new(scene, Settings { roulette_start: Some(u32::MAX), max_depth: Some(3), ..settings });
         let work = |part: usize| {
             let mut scratch = Scratch::default();
             let survey = Self::default();

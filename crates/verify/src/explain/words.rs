@@ -56,7 +56,10 @@ pub fn sentences(
 ) -> Vec<String> {
     let mut said = Vec::new();
     if scene.lamps().are_black() {
-        return vec!["The scene has no light: give a shape an `area` emitter, or add a point or environment light.".into()];
+        return vec![
+            "The scene has no light: give a shape an `area` emitter, or add a point or environment light."
+                .into(),
+        ];
     }
     let place = if question.region.is_some() { "region" } else { "picture" };
     views(survey, place, &mut said);
@@ -102,7 +105,9 @@ fn views(survey: &Survey, place: &str, said: &mut Vec<String>) {
     if most(v.empty) {
         said.push(format!("The rays through this {place} leave the scene without meeting anything, and no environment shines there."));
     } else if most(v.dark_lamp) {
-        said.push(format!("This {place} shows the dark side of a lamp: a lamp emits on the side of its normal."));
+        said.push(format!(
+            "This {place} shows the dark side of a lamp: a lamp emits on the side of its normal."
+        ));
     } else if most(v.black) && !most(v.behind) {
         said.push(format!("This {place} shows surfaces that scatter nothing towards the camera: black ones, or the back of one-sided ones."));
     }
@@ -112,7 +117,9 @@ fn views(survey: &Survey, place: &str, said: &mut Vec<String>) {
 fn depth(question: &Question<'_>, survey: &Survey, place: &str, said: &mut Vec<String>) {
     let longer: f64 = survey.longer.values().sum();
     let all = longer + survey.light();
-    let (Some(limit), Some(first)) = (question.settings.max_depth, survey.longer.keys().next()) else { return };
+    let (Some(limit), Some(first)) = (question.settings.max_depth, survey.longer.keys().next()) else {
+        return;
+    };
     if longer > 0.05 * all {
         said.push(format!(
             "At least {} of the light of this {place} comes by paths longer than the {limit} edges that are allowed \
@@ -164,12 +171,15 @@ fn noise(scene: &Scene, question: &Question<'_>, (survey, rows): (&Survey, &[Row
     let of = |r: &Row| {
         let mut lamps = std::collections::BTreeMap::<u32, f64>::new();
         let mut casters = std::collections::BTreeMap::<u32, f64>::new();
-        let own = survey.classes.iter().filter(|(c, _)| c.pattern() == r.pattern && lamp_name(c.lamp()) == r.lamp);
+        let own =
+            survey.classes.iter().filter(|(c, _)| c.pattern() == r.pattern && lamp_name(c.lamp()) == r.lamp);
         for (_, carried) in own {
             carried.lamps.iter().for_each(|(k, v)| *lamps.entry(*k).or_default() += v);
             carried.casters.iter().for_each(|(k, v)| *casters.entry(*k).or_default() += v);
         }
-        let most = |m: std::collections::BTreeMap<u32, f64>| m.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|m| m.0);
+        let most = |m: std::collections::BTreeMap<u32, f64>| {
+            m.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|m| m.0)
+        };
         let lamp = most(lamps).map_or_else(|| r.lamp.to_owned(), |l| lamp_words(scene, question.names, l));
         let over = most(casters).map(|s| format!(" over {}", shape_words(scene, question.names, s)));
         format!("{}{}", lamp, over.unwrap_or_default())
@@ -183,10 +193,16 @@ fn noise(scene: &Scene, question: &Question<'_>, (survey, rows): (&Survey, &[Row
         percent(worst.light),
     ));
     let advice = match worst.strategies.as_slice() {
-        ["s=0"] => "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface in between, makes that likelier; else only samples help.",
-        ["t=1"] => "Only light paths find it: keep the light image, and give it samples; `path` would not find it at all.",
+        ["s=0"] => {
+            "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface in between, makes that likelier; else only samples help."
+        }
+        ["t=1"] => {
+            "Only light paths find it: keep the light image, and give it samples; `path` would not find it at all."
+        }
         ["inner"] => "Only the joining of both paths' middles finds it: samples help, or a lamp with a size.",
-        ["s=1"] if lamp_name(LampEnd::Dirac) == worst.lamp => "Only next-event estimation finds it: a lamp with a size gives the other strategies a way.",
+        ["s=1"] if lamp_name(LampEnd::Dirac) == worst.lamp => {
+            "Only next-event estimation finds it: a lamp with a size gives the other strategies a way."
+        }
         _ if worst.per_sample < 3.0 => "That is little noise: a few hundred samples make it clean.",
         _ => "Several strategies share it: samples help, and so does a larger lamp.",
     };
