@@ -49,7 +49,8 @@ fn check(r: Crop, w: Crop) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::Usage(format!(
-        "the region reaches beyond the picture of {} × {} pixels from {},{} that is looked at; `--resolution` makes it larger",
+        "the region reaches beyond the picture of {} × {} pixels from {},{} that is looked at; `--resolution` \
+         makes it larger",
         w.width, w.height, w.x, w.y
     )))
 }

@@ -68,7 +68,7 @@ impl Expected {
         let mut dropped = 0.0;
         for size in sizes.iter().rev() {
             let now = expected(all, dropped);
-            if now.third <= TAME * now.variance.powf(1.5) || dropped + size[0].abs() > DROPPED * mean.abs() {
+            if now.third <= TAME * spread(now.variance) || dropped + size[0].abs() > DROPPED * mean.abs() {
                 return now;
             }
             dropped += size[0].abs();
@@ -87,15 +87,20 @@ impl Side {
         let seen = central(2) / ((n - 1.0).max(1.0) * n);
         let third = (central(3) / (n * n * n)).abs().max(expected.third);
         let largest = seen.max(expected.variance);
-        let tame = expected.third <= TAME * expected.variance.powf(1.5);
+        let tame = expected.third <= TAME * spread(expected.variance);
         let variance = if tame { seen } else { largest };
         Self { mean, variance, third, largest, dropped: expected.dropped, count: values.len() }
     }
 
     /// Whether so few contributions decide that nothing can be tested.
     pub fn is_too_skewed(&self) -> bool {
-        self.third > TOO_SKEWED * self.largest.powf(1.5)
+        self.third > TOO_SKEWED * spread(self.largest)
     }
+}
+
+/// The cube of a standard deviation, of a variance: what third moments are compared with.
+fn spread(variance: f64) -> f64 {
+    variance * variance.sqrt()
 }
 
 /// The outcome of a test.
@@ -123,7 +128,7 @@ pub fn compare(estimate: &Side, reference: &Side) -> Option<Trial> {
     let unexplained = (difference.abs() - estimate.dropped - reference.dropped).max(0.0);
     let raw = if unexplained > 0.0 { unexplained / variance.sqrt() } else { 0.0 };
     let largest = estimate.largest + reference.largest + floor;
-    let skewness = if largest > 0.0 { (estimate.third + reference.third) / largest.powf(1.5) } else { 0.0 };
+    let skewness = if largest > 0.0 { (estimate.third + reference.third) / spread(largest) } else { 0.0 };
     let t = tempered(raw, skewness);
     let degrees = |v: f64, n: usize| v * v / n.saturating_sub(1).max(1) as f64;
     // Welch–Satterthwaite.

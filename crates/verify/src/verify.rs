@@ -82,9 +82,12 @@ struct Run<'a> {
 struct Rendered {
     /// The mean picture.
     picture: Picture,
-    /// Sums of blocks, by replicate.
-    values: Vec<Vec<f64>>,
+    /// What its replicates found.
+    values: Values,
 }
+
+/// Sums of blocks, by replicate.
+type Values = Vec<Vec<f64>>;
 
 /// Renders the scene by `bdpt` and by every estimator alone, and compares each with what `bdpt` found of the paths
 /// that it can reach. The outcome does not depend on the number of threads.
@@ -150,7 +153,7 @@ impl Run<'_> {
         &self,
         estimators: &[Estimator],
         progress: impl FnMut(f64),
-    ) -> Result<(Learned, Vec<Vec<Vec<f64>>>), VerifyError> {
+    ) -> Result<(Learned, Vec<Values>), VerifyError> {
         let passes = REFERENCE * self.passes;
         let work = |replicate| {
             let settings = Settings {
@@ -234,7 +237,7 @@ impl Run<'_> {
         estimator: Estimator,
         index: usize,
         rendered: Rendered,
-        (learned, references): (&Learned, &[Vec<Vec<f64>>]),
+        (learned, references): (&Learned, &[Values]),
     ) -> Tested {
         let own = f64::from(self.replicates * self.passes);
         let theirs = own * f64::from(REFERENCE);

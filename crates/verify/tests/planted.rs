@@ -10,6 +10,8 @@ use std::time::Instant;
 use caustica_import::load;
 use caustica_render::Control;
 use caustica_scene::Scene;
+use caustica_testkit::agreement::flatten;
+use caustica_testkit::scenes::{plastic_kind, under_the_sky};
 use caustica_transport::fault::{Fault, plant};
 use caustica_verify::{Options, shrink, verify};
 
@@ -44,55 +46,69 @@ fn finds(name: &str, harmless: &[Fault]) {
     assert!(missed.is_empty(), "{name}: {missed:?}");
 }
 
-/// Only light from infinity has such an edge.
-const INFINITY: Fault = Fault::InfinityJacobian;
+/// Only light from infinity has such an edge, which the gallery does not; and what is wrong with a weight that is small
+/// anyway changes the picture by less than so few samples show. The sky has light enough for all of them.
+const SMALL: [Fault; 3] = [Fault::InfinityJacobian, Fault::NextEventDensity, Fault::SwappedDensities];
+
+#[test]
+fn light_from_infinity() {
+    let _alone = ONE_AT_A_TIME.lock().unwrap_or_else(|e| e.into_inner());
+    let scene = flatten(under_the_sky(plastic_kind()));
+    for fault in std::iter::once(None).chain(SMALL.map(Some)) {
+        plant(fault);
+        let options = Options { samples: 128, block: 4, ..Options::default() };
+        let outcome = verify(&scene, &options, &Control::default(), |_| ()).unwrap();
+        plant(None);
+        assert_eq!(outcome.agrees(), fault.is_none(), "{fault:?}");
+    }
+}
 
 #[test]
 fn bulb() {
-    finds("bulb", &[INFINITY]);
+    finds("bulb", &SMALL);
 }
 
 #[test]
 fn cornell() {
-    finds("cornell", &[INFINITY]);
+    finds("cornell", &SMALL[..2]);
 }
 
 #[test]
 fn final_() {
-    finds("final", &[INFINITY]);
+    finds("final", &SMALL);
 }
 
 #[test]
 fn furnace() {
-    finds("furnace", &[INFINITY]);
+    finds("furnace", &SMALL);
 }
 
 #[test]
 fn gap() {
-    finds("gap", &[INFINITY]);
+    finds("gap", &SMALL);
 }
 
 #[test]
 fn glass() {
-    finds("glass", &[INFINITY]);
+    finds("glass", &SMALL);
 }
 
 #[test]
 fn inverted() {
-    finds("inverted", &[INFINITY]);
+    finds("inverted", &SMALL);
 }
 
 #[test]
 fn long_way() {
-    finds("long-way", &[INFINITY]);
+    finds("long-way", &SMALL);
 }
 
 #[test]
 fn many_lamps() {
-    finds("many-lamps", &[INFINITY]);
+    finds("many-lamps", &SMALL);
 }
 
 #[test]
 fn veach_mi() {
-    finds("veach-mi", &[INFINITY]);
+    finds("veach-mi", &SMALL);
 }

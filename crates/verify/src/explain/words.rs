@@ -103,13 +103,17 @@ fn views(survey: &Survey, place: &str, said: &mut Vec<String>) {
         return;
     }
     if most(v.empty) {
-        said.push(format!("The rays through this {place} leave the scene without meeting anything, and no environment shines there."));
+        said.push(format!("The rays through this {place} leave the scene without meeting anything, and no environment shines \
+             there."));
     } else if most(v.dark_lamp) {
         said.push(format!(
             "This {place} shows the dark side of a lamp: a lamp emits on the side of its normal."
         ));
     } else if most(v.black) && !most(v.behind) {
-        said.push(format!("This {place} shows surfaces that scatter nothing towards the camera: black ones, or the back of one-sided ones."));
+        said.push(format!(
+            "This {place} shows surfaces that scatter nothing towards the camera: black ones, or the back of \
+             one-sided ones."
+        ));
     }
 }
 
@@ -194,7 +198,8 @@ fn noise(scene: &Scene, question: &Question<'_>, (survey, rows): (&Survey, &[Row
     ));
     let advice = match worst.strategies.as_slice() {
         ["s=0"] => {
-            "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface in between, makes that likelier; else only samples help."
+            "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface in \
+             between, makes that likelier; else only samples help."
         }
         ["t=1"] => {
             "Only light paths find it: keep the light image, and give it samples; `path` would not find it at all."
