@@ -23,7 +23,7 @@ pub struct Arguments {
 const EXIT_CODES: &str = "\
 Exit codes:
   0    all went well (also after a first Ctrl-C, which keeps the passes done so far)
-  1    a test of `caustica test` failed
+  1    a test of `caustica test` failed, or `caustica verify` found a difference
   2    the arguments are wrong
   3    the scene or film file cannot be read, or the scene cannot be rendered
   4    the output cannot be written
@@ -41,6 +41,10 @@ pub enum Command {
     /// Make a video (MP4): a render that converges, the strategies of bdpt summed up, or a moving camera
     #[command(subcommand)]
     Video(Video),
+    /// Test that all integrators and strategies agree on a scene, as far as each can reach its light
+    Verify(Verify),
+    /// Tell why a part of a picture is black or noisy: which paths carry its light, and who reaches them
+    Explain(Explain),
     /// Add up films of different samples, to the bits of one long render
     Merge(Merge),
     /// Make a picture from a film or a rendered OpenEXR file, with or without its light image
@@ -60,6 +64,8 @@ impl Arguments {
             Command::Merge(a) => a.voice,
             Command::Pyramid(a) => a.voice,
             Command::Video(a) => a.clip().voice,
+            Command::Verify(a) => a.voice,
+            Command::Explain(a) => a.voice,
             Command::Info(a) => Voice { json: a.json, quiet: false },
             Command::Test(a) => Voice { json: a.json, quiet: false },
             Command::Develop(_) => Voice { json: false, quiet: false },
@@ -222,6 +228,49 @@ pub struct Pyramid {
     pub sampling: Sampling,
     #[command(flatten)]
     pub look: Look,
+    #[command(flatten)]
+    pub voice: Voice,
+}
+
+#[derive(Debug, Args)]
+pub struct Verify {
+    #[command(flatten)]
+    pub source: Source,
+    /// Folder for the page `index.html`, `heat.png` and `report.json` [default: SCENE-verify beside the scene]
+    #[arg(short, long, value_name = "FOLDER")]
+    pub output: Option<PathBuf>,
+    /// Samples per pixel of each estimator; the reference has twice as many
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..))]
+    pub spp: u32,
+    /// Edge of the blocks that are compared, in pixels; larger ones are made of these
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub block: u32,
+    /// Probability that any test of the run finds a difference where there is none
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = parse_probability)]
+    pub significance: f64,
+    #[command(flatten)]
+    pub sampling: Sampling,
+    #[command(flatten)]
+    pub voice: Voice,
+}
+
+#[derive(Debug, Args)]
+pub struct Explain {
+    #[command(flatten)]
+    pub source: Source,
+    /// The part of the picture to explain, in pixels from the upper left [default: all of it]. The picture is at most 96
+    /// pixels long unless --resolution says otherwise
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", value_parser = parse_crop)]
+    pub region: Option<Crop>,
+    /// The integrator whose picture is to be explained: bdpt, path, path_ems, naive or light
+    #[arg(long, value_name = "NAME", default_value = "bdpt", hide_possible_values = true,
+        value_parser = ["bdpt", "path", "path_ems", "naive", "light"])]
+    pub integrator: String,
+    /// Samples per pixel that are looked at
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    pub spp: u32,
+    #[command(flatten)]
+    pub sampling: Sampling,
     #[command(flatten)]
     pub voice: Voice,
 }
@@ -631,6 +680,13 @@ fn parse_seconds(text: &str) -> Result<f32, String> {
     match text.trim().trim_end_matches('s').parse::<f32>() {
         Ok(s) if (0.0..=3600.0).contains(&s) => Ok(s),
         _ => Err("use a number of seconds from 0 to 3600".into()),
+    }
+}
+
+fn parse_probability(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(p) if p > 0.0 && p < 1.0 => Ok(p),
+        _ => Err("use a number between 0 and 1, such as 0.01".into()),
     }
 }
 

@@ -59,6 +59,21 @@ pub fn open_with<T>(
     Ok((Opened { scene, integrator, samples, camera }, seen))
 }
 
+/// Loads a scene to be looked into, its picture made smaller if a longest side is given.
+pub fn open_shrunk(
+    source: &Source,
+    side: Option<u32>,
+    console: &mut Console,
+) -> Result<(Scene, Vec<String>), Failure> {
+    let mut description = description(source.scene.as_deref(), console)?;
+    override_film(&mut description, source, console)?;
+    if let Some(side) = side {
+        caustica_verify::shrink(&mut description.film, side);
+    }
+    let names = description.shapes.iter().map(|s| s.name.clone()).collect();
+    Ok((scene(description, source.tree.into(), console)?, names))
+}
+
 /// `--resolution` and `--crop`.
 fn override_film(d: &mut Description, source: &Source, console: &mut Console) -> Result<(), Failure> {
     let film = &mut d.film;

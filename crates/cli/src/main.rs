@@ -5,6 +5,7 @@ mod checkpoint;
 mod compare;
 mod console;
 mod develop;
+mod explain;
 mod failure;
 mod info;
 mod interrupt;
@@ -18,6 +19,7 @@ mod render;
 mod replay;
 mod snippet;
 mod tests;
+mod verify;
 mod video;
 
 use std::process::ExitCode;
@@ -36,6 +38,8 @@ fn main() -> ExitCode {
         }
         Err(e) => e.exit(),
     };
+    #[cfg(feature = "planted-fault")]
+    caustica::transport::fault::plant_from_environment();
     let Voice { json, quiet } = arguments.voice();
     let mut console = Console::new(json, quiet);
     let result = match arguments.command {
@@ -45,6 +49,8 @@ fn main() -> ExitCode {
         Command::Video(a) => video::run(&a, &mut console),
         Command::Merge(a) => merge::run(&a, &console),
         Command::Develop(a) => develop::run(&a, &console),
+        Command::Verify(a) => verify::run(&a, &mut console),
+        Command::Explain(a) => explain::run(&a, &mut console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),
     };

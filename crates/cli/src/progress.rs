@@ -63,6 +63,18 @@ impl Bar {
         }
     }
 
+    /// Shows what is being rendered, and which part of all work is done.
+    pub fn show_part(&self, name: &str, fraction: f64) {
+        if let Some(bar) = &self.bar {
+            bar.set_position((fraction * STEPS as f64) as u64);
+            bar.set_message(format!(
+                "{:3.0}%  {name}  {} so far",
+                fraction * 100.0,
+                duration(bar.elapsed().as_secs_f64())
+            ));
+        }
+    }
+
     /// Shows how many of a video's frames there are.
     pub fn show_frames(&self, done: u32, total: u32) {
         if let Some(bar) = &self.bar {

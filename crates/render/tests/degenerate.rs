@@ -13,10 +13,10 @@ fn render(d: Description, integrator: &str, samples: u32) -> (Vec<f32>, u64) {
     let scene = Scene::new(d).unwrap_or_else(|e| panic!("{e}")).0;
     let integrator = integrator_by_name(integrator, 1.0, [0.0; 3], [0.0, 0.0, 1.0]).unwrap();
     let settings = Settings { integrator, seed: 4, ..Settings::default() };
-    let options = RenderOptions { settings, samples, threads: Some(2), time: None };
+    let options = RenderOptions { settings, samples, threads: Some(2), ..RenderOptions::default() };
     let session = Session::new(&scene, options).unwrap();
     let report = session.run(&Control::default(), |_| ()).unwrap();
-    assert_eq!(report.invalid, session.film().invalid());
+    assert_eq!(report.invalid, session.film().counts().invalid);
     let picture = session.film().develop();
     let values: Vec<f32> = picture.eye.iter().chain(&picture.light).flat_map(|p| p.0).collect();
     assert!(values.iter().all(|v| v.is_finite() && *v >= 0.0), "{values:?}");

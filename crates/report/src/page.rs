@@ -1,4 +1,4 @@
-//! What both pages share: their parts and the checks of their images.
+//! What all pages share: their parts and the checks of their images.
 
 use serde::Serialize;
 
@@ -10,6 +10,7 @@ pub const STYLE: &str = concat!(
     include_str!("../templates/style/viewer.css"),
     include_str!("../templates/style/comparison.css"),
     include_str!("../templates/style/pyramid.css"),
+    include_str!("../templates/style/verification.css"),
 );
 
 /// The scripts in one scope, in the order in which they need each other.
@@ -29,6 +30,7 @@ pub const SCRIPT: &str = concat!(
     include_str!("../templates/script/insets.js"),
     include_str!("../templates/script/comparison.js"),
     include_str!("../templates/script/pyramid.js"),
+    include_str!("../templates/script/verification.js"),
     include_str!("../templates/script/start.js"),
 );
 

@@ -132,6 +132,11 @@ impl Camera {
         })
     }
 
+    /// Whether all rays have one direction.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.projection, Projection::Orthographic { .. })
+    }
+
     fn to_world(&self, v: Vec3) -> Vec3 {
         self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
     }

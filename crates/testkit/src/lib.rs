@@ -5,6 +5,7 @@ pub mod build;
 pub mod chi_square;
 pub mod known_failures;
 pub mod oracle;
+pub mod rows;
 pub mod scaled;
 pub mod scenes;
 pub mod ways;

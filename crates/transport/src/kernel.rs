@@ -88,6 +88,7 @@ pub struct Scratch {
     pub(crate) eye: Subpath,
     pub(crate) light: Subpath,
     pub(crate) densities: Vec<VertexDensities>,
+    pub(crate) weights: Vec<f32>,
     pub(crate) candidates: Candidates,
 }
 

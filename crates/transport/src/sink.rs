@@ -12,6 +12,9 @@ pub trait Sink {
     /// Whether [`Sink::contribution`] is wanted. It is called only if so.
     const PROBES: bool = false;
 
+    /// Whether [`Contribution::weights`] is wanted.
+    const WEIGHS_ALL: bool = false;
+
     /// Whether contributions that are small beside the sample's sum may not be left to roulette: those who look at
     /// single contributions need them all as they are.
     const KEEPS_ALL: bool = Self::PROBES;
@@ -52,6 +55,9 @@ pub struct Contribution<'a> {
     pub filter_weight: f32,
     /// The path.
     pub path: PathView<'a>,
+    /// The weight of each strategy that could have made the path, by its s, with the balance heuristic: in proportion
+    /// to how often it does, roulette aside. Empty unless the sink [weighs all](Sink::WEIGHS_ALL).
+    pub weights: &'a [f32],
 }
 
 /// A full path, in two parts that are joined by the strategy's edge.

@@ -5,6 +5,7 @@ use caustica_scene::Scene;
 use caustica_scene::bsdf::{Bsdf, Walk};
 use caustica_scene::surface::SurfacePoint;
 
+use crate::fault::{Fault, is_planted};
 use crate::weight::RunningSums;
 
 /// A vertex of a subpath, on a surface.
@@ -90,11 +91,19 @@ impl Vertex {
         let scatter = match walk {
             Walk::FromCamera => {
                 let e = self.bsdf.eval(local, self.local_prev);
+                if is_planted(Fault::SwappedDensities) {
+                    return (!e.value.is_black()).then_some(Scatter {
+                        value: e.value,
+                        forward: e.to_camera_pdf,
+                        reverse: e.to_light_pdf,
+                    });
+                }
                 Scatter { value: e.value, forward: e.to_light_pdf, reverse: e.to_camera_pdf }
             }
             Walk::FromLight => {
                 let e = self.bsdf.eval(self.local_prev, local);
-                let value = e.value * (cos.abs() / self.cos(self.prev));
+                let ratio = if is_planted(Fault::Adjoint) { 1.0 } else { cos.abs() / self.cos(self.prev) };
+                let value = e.value * ratio;
                 Scatter { value, forward: e.to_camera_pdf, reverse: e.to_light_pdf }
             }
         };

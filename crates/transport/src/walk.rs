@@ -6,6 +6,7 @@ use caustica_scene::bvh::Ray;
 use caustica_scene::light::Emission;
 
 use crate::edge::Edge;
+use crate::fault::{Fault, is_planted};
 use crate::kernel::Kernel;
 use crate::numbers::{Bounce, Bounces};
 use crate::vertex::Vertex;
@@ -107,6 +108,7 @@ impl Kernel<'_> {
             let mut vertex = Vertex::new(self.scene, point, -flight.ray.direction, self.wavelengths);
             let edge = match flight.from {
                 Some(from) => Edge::finite(point.position.distance_squared(from)),
+                None if is_planted(Fault::InfinityJacobian) => Edge::finite(4.0),
                 None => Edge::INFINITE,
             };
             let cos = vertex.cos(vertex.prev);
@@ -229,6 +231,8 @@ impl Kernel<'_> {
 fn survives(flight: &mut Flight, first_throughput: f32, u: f32) -> bool {
     let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
     let survival = if left > MAX_SURVIVAL { MAX_SURVIVAL } else { left };
-    flight.throughput *= 1.0 / survival;
+    if !is_planted(Fault::Roulette) {
+        flight.throughput *= 1.0 / survival;
+    }
     u < survival
 }

@@ -131,6 +131,26 @@ pub fn exhaustive(
     h: Heuristic,
     contains: impl Fn(usize) -> bool,
 ) -> f32 {
+    let (mut own, mut sum) = (0.0, 0.0);
+    each_density(vertices, ends, (s, h), |i, density| {
+        if i == s {
+            own = density;
+        }
+        if i == s || contains(i) {
+            sum += density;
+        }
+    });
+    (own / sum) as f32
+}
+
+/// Tells the density of every strategy that can make a path of `vertices` (by the heuristic's function, and in one
+/// unknown unit), that of strategy `s`, which can, first.
+pub fn each_density(
+    vertices: &[VertexDensities],
+    ends: Ends,
+    (s, h): (usize, Heuristic),
+    mut tell: impl FnMut(usize, f64),
+) {
     let k = vertices.len();
     let joins = |i: usize| match i {
         0 => !vertices[0].delta,
@@ -145,21 +165,19 @@ pub fn exhaustive(
     // Densities relative to the plain product of strategy s, whose factors are positive; in f64, because
     // long paths span many decades.
     let square = |d: f64| if h == Heuristic::Power { d * d } else { d };
-    let own = square(special(s));
-    let mut sum = own;
+    tell(s, square(special(s)));
     let mut ratio = 1.0_f64;
     for i in (0..s).rev() {
         ratio *= f64::from(vertices[i].from_camera) / f64::from(vertices[i].from_light);
-        if joins(i) && contains(i) {
-            sum += square(ratio * special(i));
+        if joins(i) {
+            tell(i, square(ratio * special(i)));
         }
     }
     ratio = 1.0;
     for i in s + 1..=k {
         ratio *= f64::from(vertices[i - 1].from_light) / f64::from(vertices[i - 1].from_camera);
-        if joins(i) && contains(i) {
-            sum += square(ratio * special(i));
+        if joins(i) {
+            tell(i, square(ratio * special(i)));
         }
     }
-    (own / sum) as f32
 }

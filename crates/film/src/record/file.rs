@@ -7,7 +7,7 @@
 //! row, then the next ones. All numbers are little-endian.
 
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
 use std::ops::Range;
 use std::path::Path;
 
@@ -141,7 +141,7 @@ impl FilmRecord {
     }
 
     /// Of a file of that length; no more memory is taken than it can fill.
-    fn read_from(from: impl Read, length: u64) -> Result<Self, Bad> {
+    fn read_from(from: impl BufRead, length: u64) -> Result<Self, Bad> {
         let mut from = Hashed { to: from, hasher: blake3::Hasher::new() };
         let header = header(&mut from)?;
         let pixels = Film::check_memory(header.layout.window, 2)?;
@@ -192,7 +192,7 @@ impl From<FilmError> for Bad {
 }
 
 /// The checked header.
-fn header(from: &mut Hashed<impl Read>) -> Result<Header, Bad> {
+fn header(from: &mut Hashed<impl BufRead>) -> Result<Header, Bad> {
     let mut start = Vec::new();
     from.by_ref().take((MAGIC.len() + VERSION.len()) as u64).read_to_end(&mut start)?;
     let version = start.strip_prefix(MAGIC).ok_or_else(|| bad("it is not a film file"))?;
@@ -200,19 +200,13 @@ fn header(from: &mut Hashed<impl Read>) -> Result<Header, Bad> {
         return Err(bad("it is a film file of another version").into());
     }
     let mut line = Vec::new();
-    for byte in from.by_ref().take(LONGEST_HEADER).bytes() {
-        match byte? {
-            b'\n' => {
-                let header: Header = serde_json::from_slice(&line)
-                    .map_err(|e| bad(&format!("the film file's header cannot be read: {e}")))?;
-                header.layout.check()?;
-                header.check()?;
-                return Ok(header);
-            }
-            byte => line.push(byte),
-        }
-    }
-    Err(bad(DAMAGED).into())
+    from.by_ref().take(LONGEST_HEADER).read_until(b'\n', &mut line)?;
+    let line = line.strip_suffix(b"\n").ok_or_else(|| bad(DAMAGED))?;
+    let header: Header = serde_json::from_slice(line)
+        .map_err(|e| bad(&format!("the film file's header cannot be read: {e}")))?;
+    header.layout.check()?;
+    header.check()?;
+    Ok(header)
 }
 
 impl Header {
@@ -265,6 +259,20 @@ impl<R: Read> Read for Hashed<R> {
         let count = self.to.read(bytes)?;
         self.hasher.update(&bytes[..count]);
         Ok(count)
+    }
+}
+
+impl<R: BufRead> BufRead for Hashed<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.to.fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        // What is consumed is in the buffer.
+        if let Ok(bytes) = self.to.fill_buf() {
+            self.hasher.update(&bytes[..count]);
+        }
+        self.to.consume(count);
     }
 }
 

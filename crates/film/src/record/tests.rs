@@ -63,7 +63,8 @@ fn films_of_something_else_are_refused_and_leave_the_first_as_it_is() {
         other
     };
     let set = |r: &mut FilmRecord, n: &str, v: &str| r.facts.provenance.settings.insert(n.into(), v.into());
-    let cases: [(&dyn Fn(&mut FilmRecord), &str); 5] = [
+    type Change<'a> = &'a dyn Fn(&mut FilmRecord);
+    let cases: [(Change<'_>, &str); 5] = [
         (&|r| r.facts.provenance.scene_hash.clear(), "they differ in what `küche.xml` holds"),
         (
             &|r| {

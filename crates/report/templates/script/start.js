@@ -7,7 +7,8 @@ async function start() {
     return showTrouble("This browser is too old to unpack the images. A current Chrome, Edge, Firefox or Safari can.");
   const data = JSON.parse(document.getElementById("data").textContent);
   try {
-    const parts = await (data.strategies ? openPyramid(data) : openComparison(data));
+    const open = data.verification ? openVerification : data.strategies ? openPyramid : openComparison;
+    const parts = await open(data);
     window.caustica = { data, ...parts };
   } catch (error) {
     showTrouble(`This page could not be shown: ${error.message}`);

@@ -3,11 +3,44 @@
 use super::{Joined, Junction, Sample};
 use crate::kernel::Kernel;
 use crate::strategy::Strategy;
-use crate::weight::{Ends, VertexDensities, exhaustive};
+use crate::weight::{Ends, Heuristic, VertexDensities, each_density, exhaustive};
 
 impl Kernel<'_> {
     /// The weight by adding up all strategies.
     pub(super) fn exhaustive_weight(&self, sample: &Sample<'_>, joined: &Joined) -> f32 {
+        let ends = self.gather(sample, joined);
+        let contains = |i| self.makes(joined, sample, i);
+        exhaustive(&sample.densities.borrow(), ends, joined.strategy.s as usize, self.heuristic, contains)
+    }
+
+    /// The weights by the balance heuristic of all strategies of the set that can make the path, by s.
+    pub(super) fn all_weights(&self, sample: &Sample<'_>, joined: &Joined, weights: &mut Vec<f32>) {
+        let ends = self.gather(sample, joined);
+        let k = (joined.strategy.s + joined.strategy.t) as usize;
+        let mut densities = vec![0.0; k];
+        let own = (joined.strategy.s as usize, Heuristic::Balance);
+        each_density(&sample.densities.borrow(), ends, own, |i, density| {
+            if self.makes(joined, sample, i) {
+                densities[i] = density;
+            }
+        });
+        let sum: f64 = densities.iter().sum();
+        weights.clear();
+        weights.extend(densities.iter().map(|d| (d / sum) as f32));
+    }
+
+    /// Whether the set holds the strategy of the path's length with `s` light vertices, and it can make the path.
+    fn makes(&self, joined: &Joined, sample: &Sample<'_>, s: usize) -> bool {
+        let k = joined.strategy.s + joined.strategy.t - 1;
+        let escaped = joined.strategy.s == 0 && joined.strategy.t as usize - 1 > sample.eye.vertices.len();
+        // A parallel projection and an environment seen directly: (1, 1) cannot join them.
+        let unjoinable = joined.camera.infinite && escaped && k == 1;
+        self.settings.strategies.contains(Strategy { s: s as u32, t: k + 1 - s as u32 })
+            && !(unjoinable && s == 1)
+    }
+
+    /// Gathers the densities of all vertices of the path in `sample.densities`.
+    fn gather(&self, sample: &Sample<'_>, joined: &Joined) -> Ends {
         let lights = self.scene.lights(self.wavelengths);
         let (s, t) = (joined.strategy.s as usize, joined.strategy.t as usize);
         let Junction { light: (light_end, before_light), eye: (eye_end, before_eye) } = joined.junction;
@@ -56,13 +89,6 @@ impl Kernel<'_> {
             }
         };
         let found = next_to_lamp.map_or(0.0, |from| lights.towards_pdf(from, &joined.lamp).0);
-        let ends = Ends { next_event: found, light_paths: self.light_paths };
-        let set = &self.settings.strategies;
-        let k = (s + t - 1) as u32;
-        // A parallel projection and an environment seen directly: (1, 1) cannot join them.
-        let unjoinable = joined.camera.infinite && escaped && k == 1;
-        exhaustive(&all, ends, s, self.heuristic, |i| {
-            set.contains(Strategy { s: i as u32, t: k + 1 - i as u32 }) && !(unjoinable && i == 1)
-        })
+        Ends { next_event: found, light_paths: self.light_paths }
     }
 }

@@ -4,6 +4,7 @@ use caustica_math::{Spectrum, Vec3};
 use caustica_scene::light::LightPoint;
 
 use super::{Junction, Sample};
+use crate::fault::{Fault, is_planted};
 use crate::kernel::Kernel;
 use crate::sink::Sink;
 use crate::strategy::Strategy;
@@ -71,7 +72,8 @@ impl Kernel<'_> {
                     if from.delta || !self.classes.next_event {
                         0.0
                     } else {
-                        h.of(lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
+                        let share = if is_planted(Fault::NextEventDensity) { 0.5 } else { 1.0 };
+                        h.of(share * lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
                     }
                 };
                 let further = h.of(pdf.point.0 * pdf.direction.0 * end.sums.past);

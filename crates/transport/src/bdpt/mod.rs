@@ -33,6 +33,8 @@ struct Sample<'a> {
     filter_weight: f32,
     /// Room for the exhaustive weights.
     densities: RefCell<&'a mut Vec<VertexDensities>>,
+    /// Room for the weights of all strategies.
+    weights: RefCell<&'a mut Vec<f32>>,
 }
 
 /// Densities at the two ends of a joining edge, by the walks that did not make them, in the ends' own measures.
@@ -98,14 +100,15 @@ impl Kernel<'_> {
         } else {
             None
         };
-        let Scratch { eye, light, densities, candidates } = scratch;
+        let Scratch { eye, light, densities, weights, candidates } = scratch;
         for failed in [eye.failed, light.failed] {
             if failed {
                 sink.invalid();
             }
         }
-        let densities = RefCell::new(densities);
-        let sample = Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities };
+        let (densities, weights) = (RefCell::new(densities), RefCell::new(weights));
+        let sample =
+            Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities, weights };
         let mut sum = Spectrum::ZERO;
         if classes.hit {
             sum += self.hits(&sample, sink);
@@ -173,6 +176,12 @@ impl Kernel<'_> {
     fn report<S: Sink>(&self, sample: &Sample<'_>, joined: &Joined, weight: f32, sink: &mut S) {
         let (s, t) = (joined.strategy.s as usize, joined.strategy.t as usize);
         let eye = &sample.eye.vertices;
+        let mut weights = sample.weights.borrow_mut();
+        if S::WEIGHS_ALL {
+            self.all_weights(sample, joined, &mut weights);
+        } else {
+            weights.clear();
+        }
         sink.contribution(&Contribution {
             strategy: joined.strategy,
             unweighted: joined.value,
@@ -185,6 +194,7 @@ impl Kernel<'_> {
                 eye: &eye[..(t - 1).min(eye.len())],
                 camera: joined.camera,
             },
+            weights: &weights,
         });
     }
 }

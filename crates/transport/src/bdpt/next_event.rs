@@ -7,6 +7,7 @@ use caustica_scene::light::Towards;
 use super::candidate::Candidates;
 use super::{Junction, Sample};
 use crate::edge::Edge;
+use crate::fault::{Fault, is_planted};
 use crate::kernel::Kernel;
 use crate::numbers::EyeNumbers;
 use crate::sink::Sink;
@@ -48,7 +49,8 @@ impl Kernel<'_> {
         let scatter = vertex.scatter(Walk::FromCamera, found.direction)?;
         let edge = Edge::of_length(found.distance);
         let to_lamp = edge.jacobian(found.point.cos(found.direction));
-        let value = vertex.throughput * scatter.value * found.radiance * (to_lamp / found.pdf.0);
+        let arriving = if is_planted(Fault::LampCosine) { edge.falloff } else { to_lamp };
+        let value = vertex.throughput * scatter.value * found.radiance * (arriving / found.pdf.0);
         if value.is_black() {
             return None;
         }

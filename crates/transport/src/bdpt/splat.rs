@@ -7,6 +7,7 @@ use caustica_scene::camera::CameraLink;
 use caustica_scene::light::{Emission, LightPoint};
 
 use super::{Joined, Junction, Sample};
+use crate::fault::{Fault, is_planted};
 use crate::kernel::Kernel;
 use crate::numbers::LightNumbers;
 use crate::sink::Sink;
@@ -116,7 +117,8 @@ impl Kernel<'_> {
             || {
                 let h = self.heuristic;
                 let sums = sample.light.vertices[i].sums;
-                weight(sums.total(from_camera / self.light_paths, at_light.reverse.0, h), 0.0)
+                let paths = if is_planted(Fault::LightPaths) { 1.0 } else { self.light_paths };
+                weight(sums.total(from_camera / paths, at_light.reverse.0, h), 0.0)
             },
             sink,
         );

@@ -1,0 +1,216 @@
+//! Light that no strategy reaches: from a lamp without extent, over mirrors or glass alone, to a surface that is seen
+//! over mirrors or glass alone. Light paths and eye paths both arrive there, but cannot be joined. How much it is
+//! is estimated by counting what arrives near by (Jensen, "Global Illumination using Photon Maps", 1996), crudely:
+//! within a fixed distance.
+
+use std::collections::{BTreeMap, HashMap};
+
+use caustica_math::{Spectrum, Vec3, Wavelengths};
+use caustica_render::{Control, available_threads};
+use caustica_scene::Scene;
+use caustica_scene::description::Crop;
+use caustica_transport::vertex::Vertex;
+use caustica_transport::{Kernel, Scratch, Settings, Subpaths};
+use serde::Serialize;
+
+use super::Question;
+use super::survey::{Survey, is_inside};
+use super::words::{lamp_words, shape_words};
+use crate::class::{LampEnd, PathClass};
+use crate::jobs;
+use crate::verify::VerifyError;
+
+/// Light that no strategy reaches, by one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Missing {
+    /// Such as `LS+DS+E`.
+    pub pattern: String,
+    /// Its share of all light of the region, found and missing; right within a factor of two or so.
+    pub share: f64,
+    /// The lamp that it is from.
+    pub lamp: String,
+    /// The first mirror or glass that it meets.
+    pub caster: String,
+    /// The mirror or glass in which it is seen.
+    pub seen_in: String,
+}
+
+/// Light that arrived somewhere.
+struct Photon {
+    at: Vec3,
+    normal: Vec3,
+    to_light: Vec3,
+    flux: Spectrum,
+    /// Surface vertices after the lamp, the place itself included, and whether they are D.
+    vertices: Vec<bool>,
+    lamp: u32,
+    caster: u32,
+}
+
+/// Distance within which light counts as arriving at a place, relative to the scene's radius.
+const NEAR: f32 = 0.012;
+
+/// Samples per pixel whose light paths are kept.
+const PASSES: u32 = 24;
+
+/// Smaller shares are not told.
+const NEGLIGIBLE: f64 = 0.005;
+
+type Cells = HashMap<[i32; 3], Vec<Photon>>;
+
+/// Where the light of a pattern is from, by lamp, caster and what it is seen in.
+type Sources = BTreeMap<(u32, u32, u32), f64>;
+
+/// Estimates the missing light of a region.
+pub fn estimate(
+    scene: &Scene,
+    (question, region): (&Question<'_>, Crop),
+    survey: &Survey,
+    control: &Control,
+) -> Result<Vec<Missing>, VerifyError> {
+    if !scene.lamps().iter().any(|l| l.is_delta()) {
+        return Ok(Vec::new());
+    }
+    let (_, radius) = scene.bounding_sphere();
+    let near = NEAR * radius;
+    let settings = Settings { seed: question.settings.seed ^ 0xf00d, ..question.settings.clone() };
+    let kernel = Kernel::new(scene, settings);
+    let threads = question.threads.unwrap_or_else(available_threads);
+    let limit = question.settings.max_depth.unwrap_or(u32::MAX) as usize;
+    let window = scene.film.window();
+    let mut cells = Cells::new();
+    let mut paths = 0_u64;
+    let each = |pass: usize, take: &mut dyn FnMut([u32; 2], &Subpaths<'_>)| {
+        let mut scratch = Scratch::default();
+        for y in window.y..window.y + window.height {
+            for x in window.x..window.x + window.width {
+                take([x, y], &kernel.subpaths([x, y], pass as u32, &mut scratch));
+            }
+        }
+    };
+    let shoot = |pass: usize| {
+        let mut photons = Vec::new();
+        each(pass, &mut |_, paths| arrivals(scene, paths, &mut photons));
+        photons
+    };
+    let done = jobs::run((PASSES as usize, threads), control, shoot, |photons| {
+        paths += u64::from(window.width) * u64::from(window.height);
+        for photon in photons {
+            cells.entry(cell(photon.at, near)).or_default().push(photon);
+        }
+    })?;
+    if cells.is_empty() && done {
+        return Ok(Vec::new());
+    }
+    let scale = 1.0 / (paths as f64 * std::f64::consts::PI * f64::from(near) * f64::from(near));
+    let mut sums: BTreeMap<String, Sources> = BTreeMap::new();
+    let gather = |pass: usize| {
+        let mut sums: BTreeMap<String, Sources> = BTreeMap::new();
+        each(pass, &mut |pixel, paths| {
+            if is_inside(region, pixel) {
+                gather_at(paths, (&cells, near, limit), &mut sums);
+            }
+        });
+        sums
+    };
+    let done = jobs::run((PASSES as usize, threads), control, gather, |part| {
+        for (pattern, sources) in part {
+            let own = sums.entry(pattern).or_default();
+            sources.into_iter().for_each(|(k, v)| *own.entry(k).or_default() += v);
+        }
+    })?;
+    if !done {
+        return Err(VerifyError::Stopped);
+    }
+    Ok(told(scene, question, survey, (&sums, scale / f64::from(PASSES))))
+}
+
+fn told(
+    scene: &Scene,
+    question: &Question<'_>,
+    survey: &Survey,
+    (sums, scale): (&BTreeMap<String, Sources>, f64),
+) -> Vec<Missing> {
+    let all: f64 = sums.values().flat_map(|s| s.values()).sum::<f64>() * scale;
+    let total = all + survey.light() / f64::from(survey.passes);
+    let mut missing: Vec<Missing> = Vec::new();
+    for (pattern, sources) in sums {
+        for ((lamp, caster, seen), light) in sources {
+            let share = light * scale / total;
+            if share >= NEGLIGIBLE {
+                missing.push(Missing {
+                    pattern: pattern.clone(),
+                    share,
+                    lamp: lamp_words(scene, question.names, *lamp),
+                    caster: shape_words(scene, question.names, *caster),
+                    seen_in: shape_words(scene, question.names, *seen),
+                });
+            }
+        }
+    }
+    missing.sort_by(|a, b| b.share.total_cmp(&a.share));
+    missing
+}
+
+fn cell(at: Vec3, near: f32) -> [i32; 3] {
+    [at.x, at.y, at.z].map(|c| (c / near).floor() as i32)
+}
+
+/// Where a light path of a lamp without extent arrives over S first, and never over two D in a row.
+fn arrivals(scene: &Scene, paths: &Subpaths<'_>, photons: &mut Vec<Photon>) {
+    let Some(emission) = &paths.emission else { return };
+    if LampEnd::of(scene, &emission.point) != LampEnd::Dirac {
+        return;
+    }
+    for (i, v) in paths.light.iter().enumerate() {
+        let before = i.checked_sub(1).map(|j| paths.light[j].is_connectible());
+        if v.is_connectible() {
+            // Next-event estimation or inner connections reach whatever follows.
+            if before != Some(false) {
+                return;
+            }
+            photons.push(Photon {
+                at: v.point.position,
+                normal: v.point.normal,
+                to_light: v.prev,
+                flux: v.throughput,
+                vertices: paths.light[..=i].iter().map(Vertex::is_connectible).collect(),
+                lamp: emission.point.light,
+                caster: paths.light[0].point.shape,
+            });
+        }
+    }
+}
+
+/// Adds what arrives where an eye path meets its first D, if it comes there over S.
+fn gather_at(
+    paths: &Subpaths<'_>,
+    (cells, near, limit): (&Cells, f32, usize),
+    sums: &mut BTreeMap<String, Sources>,
+) {
+    let Some(i) = paths.eye.iter().position(Vertex::is_connectible) else { return };
+    if i == 0 {
+        return;
+    }
+    let (z, seen) = (&paths.eye[i], paths.eye[0].point.shape);
+    let [cx, cy, cz] = cell(z.point.position, near);
+    for offset in 0..27 {
+        let key = [cx + offset % 3 - 1, cy + offset / 3 % 3 - 1, cz + offset / 9 - 1];
+        for p in cells.get(&key).into_iter().flatten() {
+            let apart =
+                p.at.distance_squared(z.point.position) > near * near || p.normal.dot(z.point.normal) < 0.7;
+            if apart || p.vertices.len() + i + 1 > limit {
+                continue;
+            }
+            let Some(scatter) = z.scatter(caustica_scene::bsdf::Walk::FromCamera, p.to_light) else {
+                continue;
+            };
+            let value = z.throughput * scatter.value * p.flux * (1.0 / z.cos(p.to_light).max(1e-6));
+            let chain = p.vertices.iter().copied().chain(std::iter::repeat_n(false, i));
+            let class = PathClass::new(LampEnd::Dirac, chain);
+            let light = f64::from(Wavelengths::Rgb.rgb(value).luminance());
+            let source = sums.entry(class.pattern()).or_default();
+            *source.entry((p.lamp, p.caster, seen)).or_default() += light;
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! What other renderers are known to get wrong: a short run of every row's scene without a mismatch.
+
+use caustica_render::Control;
+use caustica_testkit::agreement::flatten;
+use caustica_testkit::rows::rows;
+use caustica_transport::Settings;
+use caustica_verify::{Options, verify};
+
+/// All rows together have a significance of 0.01.
+#[test]
+fn every_row_is_free_of_mismatches() {
+    let rows = rows();
+    let significance = 0.01 / rows.len() as f64;
+    for row in rows {
+        let settings = Settings { seed: 11, max_depth: Some(9), ..Settings::default() };
+        let options = Options { settings, samples: 64, block: 4, significance, ..Options::default() };
+        let outcome = verify(&flatten(row.scene), &options, &Control::default(), |_| ()).unwrap();
+        for t in &outcome.tested {
+            let (name, p) = (&t.estimator.name, t.smallest_p());
+            assert!(t.mismatches == 0 && t.picture.invalid == 0, "{}: {name}, p = {p:.1e}", row.what);
+        }
+        // Something was tested on each.
+        assert!(outcome.tested.iter().any(|t| t.tests() > 0), "{}", row.what);
+    }
+}
