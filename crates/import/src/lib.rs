@@ -16,7 +16,8 @@ use caustica_scene::{Description, Diagnostic};
 
 use files::Folder;
 
-pub use image::{ReadImage, read_image};
+pub use files::Trust;
+pub use image::{ReadImage, decode_image, read_image};
 pub use nori::{SceneTest, TestKind};
 pub use obj::{ObjMesh, load_obj, read_obj};
 
@@ -34,8 +35,13 @@ pub struct Loaded {
 /// The most bytes that a scene file may have.
 const LARGEST_SCENE_FILE: u64 = 64 << 20;
 
-/// Reads a scene file and all files that it names.
+/// Reads a scene file and all files that it names, wherever they are.
 pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
+    load_with(path, Trust::Full)
+}
+
+/// Reads a scene file and the files that it names, where `trust` allows it to name them.
+pub fn load_with(path: &Path, trust: Trust) -> Result<Loaded, Diagnostic> {
     let name = path.display().to_string();
     let bytes = files::read(path, LARGEST_SCENE_FILE)
         .map_err(|why| Diagnostic::error(format!("cannot read the scene `{name}`: {why}")))?;
@@ -51,18 +57,28 @@ pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
                 .hint("save the file with the encoding UTF-8"));
         }
     };
-    parse_nori(text, &name, path.parent().unwrap_or(Path::new("")))
+    parse_nori_with(text, &name, path.parent().unwrap_or(Path::new("")), trust)
 }
 
 /// Reads a scene from the text of a Nori scene file. `file_name` is for messages; relative paths start
 /// at `base_dir`.
 pub fn parse_nori(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded, Diagnostic> {
-    parse(text, file_name, Folder { base: base_dir, embedded: &[] })
+    parse_nori_with(text, file_name, base_dir, Trust::Full)
+}
+
+/// The same with a choice of the files that the scene may name.
+pub fn parse_nori_with(
+    text: &str,
+    file_name: &str,
+    base_dir: &Path,
+    trust: Trust,
+) -> Result<Loaded, Diagnostic> {
+    parse(text, file_name, Folder { base: base_dir, embedded: &[], trust })
 }
 
 /// Reads a scene that comes with the program: its text, and its meshes as (name, OBJ text).
 pub fn parse_embedded(text: &str, file_name: &str, meshes: &[(&str, &str)]) -> Result<Loaded, Diagnostic> {
-    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes })
+    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes, trust: Trust::Full })
 }
 
 fn parse(text: &str, file_name: &str, folder: Folder<'_>) -> Result<Loaded, Diagnostic> {

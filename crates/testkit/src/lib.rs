@@ -5,5 +5,6 @@ pub mod build;
 pub mod chi_square;
 pub mod known_failures;
 pub mod oracle;
+pub mod random_scene;
 pub mod scenes;
 pub mod ways;

@@ -6,9 +6,14 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
-use super::{Pixels, check_size, srgb};
+use super::{Pixels, Room, srgb};
 
-pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+/// The most pixels to a bit. Every block of 8 × 8 has a code of at least one bit, and with sampling factors of up
+/// to 4 some component has a block for every 16 of the full grid.
+const CLOSEST_PACKING: u64 = 64 * 16;
+
+
+pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, String> {
     // Strict: a file that is cut off is an error, not a picture with a grey part.
     let options = DecoderOptions::default()
         .set_strict_mode(true)
@@ -18,7 +23,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Pixels, String> {
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_headers().map_err(|e| e.to_string())?;
     let info = decoder.info().ok_or("it has no header")?;
-    let (width, height) = check_size(info.width.into(), info.height.into())?;
+    let (width, height) = room.check(info.width.into(), info.height.into())?;
+    room.holds(u64::from(width) * u64::from(height), CLOSEST_PACKING)?;
     let data = decoder.decode().map_err(|e| e.to_string())?;
     let channels = decoder.output_colorspace().map_or(3, |c| c.num_components());
     let count = width as usize * height as usize;

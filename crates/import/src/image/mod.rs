@@ -35,17 +35,32 @@ pub struct ReadImage {
 /// Reads a PNG, JPEG or OpenEXR image. The content tells which it is, not the name. PNG and JPEG are
 /// taken as sRGB, OpenEXR as linear; transparency is ignored.
 pub fn read_image(path: &Path) -> Result<ReadImage, Diagnostic> {
-    let fail = |why: String| Diagnostic::error(format!("cannot read the image `{}`: {why}", path.display()));
-    let bytes = files::read(path, LARGEST_FILE).map_err(fail)?;
+    read_within(path, MOST_PIXELS)
+}
+
+/// The same of the bytes of a file; `file_name` is for messages.
+pub fn decode_image(bytes: &[u8], file_name: &str) -> Result<ReadImage, Diagnostic> {
+    decode_within(bytes, file_name, MOST_PIXELS)
+}
+
+/// Reads an image of at most so many pixels.
+pub(crate) fn read_within(path: &Path, most_pixels: u64) -> Result<ReadImage, Diagnostic> {
+    let name = path.display().to_string();
+    let bytes = files::read(path, LARGEST_FILE).map_err(|why| cannot_read(&name, &why))?;
+    decode_within(&bytes, &name, most_pixels)
+}
+
+fn decode_within(bytes: &[u8], file_name: &str, most_pixels: u64) -> Result<ReadImage, Diagnostic> {
+    let room = Room { file: bytes.len() as u64, pixels: most_pixels.min(MOST_PIXELS) };
     // The decoders are other people's code, and no file may bring the program down.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode(&bytes)))
+    let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes, room)))
         .unwrap_or_else(|_| Err("its decoder failed; the file is damaged".into()));
-    let mut image = decoded.map_err(fail)?;
+    let mut image = decoded.map_err(|why| cannot_read(file_name, &why))?;
     let changed = image.pixels.iter_mut().flat_map(|p| p.0.iter_mut()).map(clean).filter(|c| *c).count();
     let mut warnings = Vec::new();
     if changed > 0 {
         let message =
-            format!("{changed} values of the image `{}` are negative or not finite", path.display());
+            format!("{changed} values of the image `{file_name}` are negative or not finite");
         warnings.push(
             Diagnostic::warning(message)
                 .hint(format!("infinity is read as {LARGEST_HALF}, all others of them as 0")),
@@ -55,6 +70,10 @@ pub fn read_image(path: &Path) -> Result<ReadImage, Diagnostic> {
     Ok(ReadImage { image: Image { width, height, pixels: pixels.into() }, warnings })
 }
 
+fn cannot_read(name: &str, why: &str) -> Diagnostic {
+    Diagnostic::error(format!("cannot read the image `{name}`: {why}"))
+}
+
 /// What decoders give.
 struct Pixels {
     width: u32,
@@ -62,23 +81,40 @@ struct Pixels {
     pixels: Vec<Rgb>,
 }
 
-fn decode(bytes: &[u8]) -> Result<Pixels, String> {
+fn decode(bytes: &[u8], room: Room) -> Result<Pixels, String> {
     match bytes {
-        [0x89, b'P', b'N', b'G', ..] => png::decode(bytes),
-        [0xFF, 0xD8, 0xFF, ..] => jpeg::decode(bytes),
-        [0x76, 0x2F, 0x31, 0x01, ..] => exr::decode(bytes),
+        [0x89, b'P', b'N', b'G', ..] => png::decode(bytes, room),
+        [0xFF, 0xD8, 0xFF, ..] => jpeg::decode(bytes, room),
+        [0x76, 0x2F, 0x31, 0x01, ..] => exr::decode(bytes, room),
         _ => Err("it is neither PNG nor JPEG nor OpenEXR".into()),
     }
 }
 
-/// Refuses sizes that no picture has, before anything is allocated for them.
-fn check_size(width: u64, height: u64) -> Result<(u32, u32), String> {
-    if width == 0 || height == 0 {
-        return Err("it has no pixels".into());
+/// What limits the size of an image.
+#[derive(Clone, Copy)]
+struct Room {
+    /// Length of the file in bytes.
+    file: u64,
+    /// The most pixels that are taken.
+    pixels: u64,
+}
+
+impl Room {
+    /// Refuses sizes that no picture has, before anything is allocated for them.
+    fn check(self, width: u64, height: u64) -> Result<(u32, u32), String> {
+        if width == 0 || height == 0 {
+            return Err("it has no pixels".into());
+        }
+        match (u32::try_from(width), u32::try_from(height), width.checked_mul(height)) {
+            (Ok(w), Ok(h), Some(pixels)) if pixels <= self.pixels => Ok((w, h)),
+            _ => Err(format!("{width} × {height} pixels are more than the {} that are taken", self.pixels)),
+        }
     }
-    match (u32::try_from(width), u32::try_from(height), width.checked_mul(height)) {
-        (Ok(w), Ok(h), Some(pixels)) if pixels <= MOST_PIXELS => Ok((w, h)),
-        _ => Err(format!("{width} × {height} pixels are more than the {MOST_PIXELS} that are taken")),
+
+    /// Refuses so many bits of pixels, of which the format cannot pack more than `closest` into one bit.
+    fn holds(self, bits: u64, closest: u64) -> Result<(), String> {
+        let most = self.file.saturating_mul(8).saturating_mul(closest);
+        if bits <= most { Ok(()) } else { Err("it is cut off, or its size is wrong".into()) }
     }
 }
 
