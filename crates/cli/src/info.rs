@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::loading;
 
 pub fn run(args: &Info, console: &mut Console) -> Result<ExitCode, Failure> {
-    let description = loading::description(args.scene.as_deref(), console)?;
+    let description = loading::description(args.scene.as_deref(), loading::trust(args.untrusted), console)?;
     let outline = outline(&description);
     let scene = loading::scene(description, TreeQuality::default(), console)?;
     let info = describe(&scene, outline);

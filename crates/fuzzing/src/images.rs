@@ -24,7 +24,10 @@ pub fn seeds() -> Vec<Vec<u8>> {
     }
     for compression in COMPRESSIONS {
         for blocks in [Blocks::ScanLines, Blocks::Tiles(Vec2(4, 4))] {
-            seeds.push(exr(&["R", "G", "B"], Encoding { compression, blocks, line_order: LineOrder::Increasing }));
+            seeds.push(exr(
+                &["R", "G", "B"],
+                Encoding { compression, blocks, line_order: LineOrder::Increasing },
+            ));
         }
     }
     seeds.push(exr(&["Y"], Encoding::UNCOMPRESSED));

@@ -52,13 +52,7 @@ pub const TARGETS: &[Target] = &[
         words: words::IMAGES,
     },
     Target { name: "exr", run: readers::exr, seeds: seeds::exr, mutate: mutate::binary, words: words::EXR },
-    Target {
-        name: "scenes",
-        run: scenes::scenes,
-        seeds: scenes::seeds,
-        mutate: mutate::binary,
-        words: &[],
-    },
+    Target { name: "scenes", run: scenes::scenes, seeds: scenes::seeds, mutate: mutate::binary, words: &[] },
 ];
 
 /// The target of that name.

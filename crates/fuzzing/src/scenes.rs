@@ -1,6 +1,6 @@
 //! Random valid scenes, rendered by every integrator.
 
-use caustica_math::{Filter, Sampler};
+use caustica_math::{Filter, Sampler, Vec3};
 use caustica_render::{Control, INTEGRATOR_NAMES, RenderOptions, Session, integrator_by_name};
 use caustica_scene::Scene;
 use caustica_testkit::random_scene::{Choices, bytes_of_seed, random_scene};
@@ -48,10 +48,10 @@ fn settings(choices: &mut Choices) -> Settings {
 /// Every integrator gives finite pixels, none of them negative unless the filter is, and the same bits on one
 /// thread and on two.
 fn renders_soundly(scene: &Scene, settings: &Settings) {
-    let (center, radius) = scene.bounding_sphere();
+    let (_, radius) = scene.bounding_sphere();
     for (name, _) in INTEGRATOR_NAMES {
-        let forward = scene.camera.forward();
-        let integrator = integrator_by_name(name, 2.0 * radius, center.into(), forward.into());
+        let [eye, forward] = [scene.camera.position(), scene.camera.forward()].map(|v: Vec3| [v.x, v.y, v.z]);
+        let integrator = integrator_by_name(name, 2.0 * radius, eye, forward);
         let settings = Settings { integrator: integrator.expect("a known name"), ..settings.clone() };
         let render = |threads| {
             let options = RenderOptions {

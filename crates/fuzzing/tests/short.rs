@@ -27,7 +27,8 @@ fn short(name: &str, count: u64) {
         let began = Instant::now();
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| (target.run)(input))) {
             let path = std::env::temp_dir().join(format!("caustica-{name}-crash"));
-            let kept = std::fs::write(&path, input).map_or(String::new(), |()| format!(" ({})", path.display()));
+            let kept =
+                std::fs::write(&path, input).map_or(String::new(), |()| format!(" ({})", path.display()));
             eprintln!("{name}: {what}{kept}");
             std::panic::resume_unwind(panic);
         }

@@ -193,6 +193,40 @@ fn crc(bytes: &[u8]) -> u32 {
     })
 }
 
+/// Found by fuzzing: a block of B44 made the decoder panic on a thread of its own, which ended the process.
+#[test]
+fn a_decoder_that_panics_is_an_error() {
+    let halves = || FlatSamples::F16(vec![exr::prelude::f16::ONE; 16]);
+    let list = ["R", "G", "B"].map(|name| AnyChannel::new(name, halves()));
+    let encoding = Encoding { compression: exr::prelude::Compression::B44, ..Encoding::UNCOMPRESSED };
+    let attributes = LayerAttributes::named("first");
+    let channels = AnyChannels::sort(list.into_iter().collect());
+    let layer = exr::prelude::Layer::new((4, 4), attributes, encoding, channels);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    exr::prelude::Image::from_layer(layer).write().to_buffered(&mut bytes).unwrap();
+    let mut bytes = bytes.into_inner();
+    // Differences below zero: the decoder's arithmetic wraps around, or panics where that is checked.
+    let last_block = bytes.len() - 14;
+    bytes[last_block..].fill(0);
+    if let Err(error) = read(&bytes) {
+        assert!(error.contains("its decoder failed"), "{error}");
+    }
+}
+
+/// Found by reading: a header of a few bytes asked for gigabytes.
+#[test]
+fn no_format_packs_pixels_closer_than_it_can() {
+    let mut jpeg = COLOURS.to_vec();
+    let frame = jpeg.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
+    jpeg[frame + 5..frame + 9].copy_from_slice(&[0x3F, 0xFF, 0x3F, 0xFF]);
+    assert!(read(&jpeg).unwrap_err().contains("cut off, or its size is wrong"));
+    let mut exr = exr(&[("Y", floats([0.5, 1.0]))]);
+    let name = b"dataWindow\0box2i\0";
+    let window = exr.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+    exr[window + 8..window + 16].copy_from_slice(&[0xFF, 0x3F, 0, 0, 0xFF, 0x3F, 0, 0]);
+    assert!(read(&exr).unwrap_err().contains("cut off, or its size is wrong"));
+}
+
 #[test]
 fn what_is_no_image() {
     assert!(read(b"hello").unwrap_err().contains("neither PNG nor JPEG nor OpenEXR"));

@@ -11,7 +11,6 @@ use super::{Pixels, Room};
 /// No compression of the format packs pixels closer than this (deflate reaches 1032 to 1).
 const CLOSEST_PACKING: u64 = 1100;
 
-
 /// The most samples, over all channels, that the first layer may have.
 const MOST_SAMPLES: u64 = 1 << 30;
 
@@ -31,6 +30,8 @@ pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, String> {
         .all_channels()
         .first_valid_layer()
         .all_attributes()
+        // A panic of the decoder on a thread of its own would end the process.
+        .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
     let layer = &image.layer_data;

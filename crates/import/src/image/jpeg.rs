@@ -12,7 +12,6 @@ use super::{Pixels, Room, srgb};
 /// to 4 some component has a block for every 16 of the full grid.
 const CLOSEST_PACKING: u64 = 64 * 16;
 
-
 pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, String> {
     // Strict: a file that is cut off is an error, not a picture with a grey part.
     let options = DecoderOptions::default()

@@ -59,8 +59,7 @@ fn decode_within(bytes: &[u8], file_name: &str, most_pixels: u64) -> Result<Read
     let changed = image.pixels.iter_mut().flat_map(|p| p.0.iter_mut()).map(clean).filter(|c| *c).count();
     let mut warnings = Vec::new();
     if changed > 0 {
-        let message =
-            format!("{changed} values of the image `{file_name}` are negative or not finite");
+        let message = format!("{changed} values of the image `{file_name}` are negative or not finite");
         warnings.push(
             Diagnostic::warning(message)
                 .hint(format!("infinity is read as {LARGEST_HALF}, all others of them as 0")),

@@ -132,7 +132,8 @@ impl<'c> Context<'c> {
         if let Some(id) = self.images.get(&path) {
             return Ok(*id);
         }
-        let read = image::read_within(&path, self.left.pixels).map_err(|e| self.place_if_unplaced(e, range))?;
+        let read =
+            image::read_within(&path, self.left.pixels).map_err(|e| self.place_if_unplaced(e, range))?;
         self.left.pixels -= read.image.pixels.len() as u64;
         for warning in read.warnings {
             let placed = self.place_if_unplaced(warning, range);

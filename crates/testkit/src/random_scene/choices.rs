@@ -3,7 +3,7 @@
 use caustica_math::Rgb;
 
 /// Light of every strength, from none to far beyond the sun.
-const STRENGTHS: [f32; 8] = [1.0, 10.0, 0.0, 1e-6, 1e3, 1e6, 1e12, 1e-20];
+const STRENGTHS: [f32; 8] = [1.0, 10.0, 100.0, 0.0, 1e-6, 1e4, 1e12, 1e-20];
 
 /// Numbers and choices that bytes decide; when the bytes are over, every byte is zero.
 #[derive(Clone, Debug)]
@@ -84,7 +84,7 @@ impl<'b> Choices<'b> {
 
     /// A colour of light; extreme in wild scenes.
     pub fn light(&mut self) -> Rgb {
-        let strengths = if self.wild { &STRENGTHS[..] } else { &STRENGTHS[..3] };
+        let strengths = if self.wild { &STRENGTHS[..] } else { &STRENGTHS[..4] };
         let strength = *self.pick(strengths);
         let colour = self.albedo();
         colour * strength

@@ -26,11 +26,12 @@ pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
         5 => twin(d, material),
         _ => sphere(d, [0.0; 3], 5.0 * scale, material),
     };
-    if matches!(d.shapes[index].geometry, Geometry::Mesh(_)) && matches!(d.shapes[index].name.as_str(), "body" | "soup")
+    if matches!(d.shapes[index].geometry, Geometry::Mesh(_))
+        && matches!(d.shapes[index].name.as_str(), "body" | "soup")
     {
         d.shapes[index].to_world = placed(center, size, choices);
     }
-    if choices.once_in(3) {
+    if choices.once_in(2) {
         d.shapes[index].emission = Some(texture(true, choices));
     }
 }
@@ -105,7 +106,8 @@ fn material(d: &mut Description, choices: &mut Choices) -> MaterialId {
     } else {
         (1.0 + choices.unit(), 1.0)
     };
-    let alpha = if choices.is_wild() { *choices.pick(&[0.1, 1e-4, 1e-6, 1.0, 10.0]) } else { 0.01 + choices.unit() };
+    let alpha =
+        if choices.is_wild() { *choices.pick(&[0.1, 1e-4, 1e-6, 1.0, 10.0]) } else { 0.01 + choices.unit() };
     let metal = |choices: &mut Choices| (choices.albedo() * 3.0 + Rgb::splat(0.05), choices.albedo() * 5.0);
     let kind = match choices.below(7) {
         0 => MaterialKind::Diffuse { albedo: texture(false, choices) },
