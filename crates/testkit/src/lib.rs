@@ -7,4 +7,5 @@ pub mod known_failures;
 pub mod oracle;
 pub mod random_scene;
 pub mod scenes;
+pub mod seed;
 pub mod ways;
