@@ -16,6 +16,9 @@ pub use choices::Choices;
 /// How large scenes are: what one unit is in the world.
 const SCALES: [f32; 8] = [1.0, 1.0, 1.0, 1e-3, 1e3, 1e-6, 1e6, 1e2];
 
+/// Parameters of filters that make hardly one.
+const PARAMETERS: [f32; 6] = [1.0, 1e-6, 0.01, 30.0, -1e6, 1e30];
+
 /// Bytes for a scene, by a seed.
 pub fn bytes_of_seed(seed: u64) -> Vec<u8> {
     let word = |i: u64| mix64(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ i).to_le_bytes();
@@ -52,19 +55,23 @@ fn film(d: &mut Description, choices: &mut Choices) {
         Crop { x, y, width: 1.max(width - x), height: 1.max(height - y) }
     });
     let radius = 0.1 + 3.0 * choices.unit();
-    let parameter = choices.signed();
+    let parameter = if choices.is_wild() { *choices.pick(&PARAMETERS) } else { choices.signed() };
     let filter = match choices.below(5) {
         0 => Filter::Box { radius: 0.5 },
         1 => Filter::Box { radius },
         2 => Filter::Tent { radius },
-        3 => Filter::Gaussian { radius, stddev: (0.1 * radius).max(parameter.abs()) },
+        3 => Filter::Gaussian { radius, stddev: parameter.abs().max(1e-6) },
         _ => Filter::Mitchell { radius, b: parameter, c: choices.signed() },
     };
     d.film = FilmSettings { width, height, crop, filter };
 }
 
 fn camera(d: &mut Description, scale: f32, choices: &mut Choices) {
-    let fov = 5.0 + 165.0 * choices.unit();
+    let fov = if choices.is_wild() {
+        *choices.pick(&[60.0, 1e-3, 1.0, 179.0, 179.99])
+    } else {
+        5.0 + 165.0 * choices.unit()
+    };
     let kind = match choices.below(4) {
         0 => CameraKind::Perspective { fov },
         1 => CameraKind::ThinLens {
@@ -99,7 +106,8 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
     let kind = match choices.below(5) {
         0 => LightKind::Point { position, intensity: spread },
         1 => {
-            let outer_angle = 0.5 + 179.5 * choices.unit();
+            let narrowest = if choices.is_wild() { 1e-3 } else { 0.5 };
+            let outer_angle = narrowest + 179.5 * choices.unit();
             let inner_angle = outer_angle * choices.unit();
             LightKind::Spot { position, direction, intensity: spread, inner_angle, outer_angle }
         }

@@ -166,3 +166,40 @@ impl<'c> Context<'c> {
             .get_or_insert_with(|| description.add_material(MaterialKind::Diffuse { albedo }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use caustica_math::Transform;
+    use caustica_scene::description::Shape;
+
+    use super::*;
+    use crate::source::Source;
+
+    /// Also of a mesh that is read once and named again.
+    #[test]
+    fn triangles_are_counted_wherever_they_are_named() {
+        let source = Source::new("s.xml", "<scene/>");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        let folder =
+            Folder { base: Path::new(""), embedded: &[("a", text), ("b", text)], trust: Trust::OwnFolder };
+        for names in [["a", "a", "a"], ["a", "b", "a"], ["a", "a", "b"]] {
+            let mut warnings = Warnings::default();
+            let mut cx = Context::new(Place { source: &source }, folder, &mut warnings);
+            cx.left.triangles = 2;
+            for name in &names[..2] {
+                let geometry = Geometry::Mesh(cx.mesh(name, &(0..1)).unwrap());
+                let (to_world, material) = (Transform::IDENTITY, MaterialId(0));
+                let name = String::new();
+                let shape = Shape { name, geometry, to_world, material, emission: None, origin: None };
+                cx.description.shapes.push(shape);
+            }
+            let error = cx.mesh(names[2], &(0..1)).unwrap_err();
+            assert!(
+                error.message.contains("more than 16777216 triangles") && error.origin.is_some(),
+                "{error}"
+            );
+        }
+    }
+}

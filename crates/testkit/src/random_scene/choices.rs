@@ -3,7 +3,7 @@
 use caustica_math::Rgb;
 
 /// Light of every strength, from none to far beyond the sun.
-const STRENGTHS: [f32; 8] = [1.0, 10.0, 100.0, 0.0, 1e-6, 1e4, 1e12, 1e-20];
+const STRENGTHS: [f32; 8] = [1.0, 10.0, 100.0, 0.0, 1e-6, 1e4, 1e20, 1e-30];
 
 /// Numbers and choices that bytes decide; when the bytes are over, every byte is zero.
 #[derive(Clone, Debug)]

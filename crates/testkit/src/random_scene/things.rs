@@ -12,7 +12,8 @@ use crate::build::{add, ellipsoid, quad, sphere};
 /// Adds a shape, with its material and, now and then, light.
 pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
     let material = material(d, choices);
-    let center = choices.vector().map(|c| 1.5 * c * scale);
+    let far = if choices.is_wild() { *choices.pick(&[1.0, 1.0, 1e3, 1e6]) } else { 1.0 };
+    let center = choices.vector().map(|c| 1.5 * c * scale * far);
     let size = scale * (0.05 + choices.unit());
     let index = match choices.below(7) {
         0 => sphere(d, center, size, material),
@@ -39,7 +40,7 @@ pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
 /// A transform that may turn, stretch and mirror.
 fn placed(center: [f32; 3], size: f32, choices: &mut Choices) -> Transform {
     let factor = |choices: &mut Choices| {
-        let wide = if choices.is_wild() { 1e3 } else { 2.0 };
+        let wide = if choices.is_wild() { *choices.pick(&[2.0, 1e-6, 1e-3, 1e3, 1e6]) } else { 2.0 };
         let stretch = if choices.unit() > 0.5 { 1.0 } else { wide };
         f64::from(size) * if choices.once_in(4) { -stretch } else { stretch }
     };
