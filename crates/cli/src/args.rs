@@ -41,9 +41,11 @@ pub enum Command {
     /// Make a video (MP4): a render that converges, the strategies of bdpt summed up, or a moving camera
     #[command(subcommand)]
     Video(Video),
-    /// Make a picture from a rendered OpenEXR file, with or without its light image
+    /// Add up films of different samples, to the bits of one long render
+    Merge(Merge),
+    /// Make a picture from a film or a rendered OpenEXR file, with or without its light image
     Develop(Develop),
-    /// Tell what a scene file holds
+    /// Tell what a scene file or a film holds
     Info(Info),
     /// Run the statistical tests (`ttest`, `chi2test`) that a scene file carries
     Test(Test),
@@ -55,6 +57,7 @@ impl Arguments {
         match &self.command {
             Command::Render(a) => a.voice,
             Command::Compare(a) => a.voice,
+            Command::Merge(a) => a.voice,
             Command::Pyramid(a) => a.voice,
             Command::Video(a) => a.clip().voice,
             Command::Info(a) => Voice { json: a.json, quiet: false },
@@ -119,11 +122,22 @@ pub struct Voice {
 pub struct Render {
     #[command(flatten)]
     pub source: Source,
-    /// Output files; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]
+    /// Output files; both OUTPUT.exr and OUTPUT.png are written [default: beside the scene, with its name]. With
+    /// OUTPUT.film, only that: a film that can be merged and developed
     #[arg(short, long)]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub length: Length,
+    /// Render only these samples of each pixel, of which the second number is not one: 1000..2000 is the second
+    /// thousand. Films of other ranges can be added by `caustica merge`
+    #[arg(long, value_name = "A..B", conflicts_with = "spp", value_parser = parse_samples)]
+    pub samples: Option<(u32, u32)>,
+    /// Stop when a typical pixel is right within this part of its brightness, with 95 % certainty: 0.01 or 1%. The
+    /// number of samples is then unlimited, if --spp does not say otherwise
+    #[arg(long, value_name = "ERROR", value_parser = parse_noise)]
+    pub noise: Option<f64>,
+    #[command(flatten)]
+    pub checkpoint: Checkpoint,
     #[command(flatten)]
     pub method: Method,
     /// What becomes of the light image, which holds what light paths splat: most caustics
@@ -134,6 +148,32 @@ pub struct Render {
     /// Print one sample of the render that the other options ask for, strategy by strategy, instead of rendering
     #[arg(long, value_name = "X,Y,SAMPLE", value_parser = parse_replay)]
     pub replay: Option<([u32; 2], u32)>,
+    #[command(flatten)]
+    pub voice: Voice,
+}
+
+/// How a long render is kept safe.
+#[derive(Debug, Args)]
+pub struct Checkpoint {
+    /// Keep what is rendered so far in this film file, which is replaced whole or not at all
+    #[arg(long = "checkpoint", value_name = "FILE")]
+    pub file: Option<PathBuf>,
+    /// How often: 60s, 10m
+    #[arg(long, value_name = "TIME", value_parser = parse_duration, default_value = "60s", requires = "file")]
+    pub every: Duration,
+    /// Go on where the checkpoint ends, if it is there
+    #[arg(long, requires = "file")]
+    pub resume: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Merge {
+    /// Films of the same scene and settings, of different samples
+    #[arg(required = true, value_name = "FILM")]
+    pub films: Vec<PathBuf>,
+    /// The film of all their samples
+    #[arg(short, long, value_name = "FILM")]
+    pub output: PathBuf,
     #[command(flatten)]
     pub voice: Voice,
 }
@@ -369,7 +409,7 @@ impl Look {
 
 #[derive(Debug, Args)]
 pub struct Develop {
-    /// OpenEXR file with an eye and a light image, as `caustica render` writes it
+    /// Film, or OpenEXR file with an eye and a light image, as `caustica render` writes them
     pub film: PathBuf,
     /// Output file: .png, or .exr to keep all layers with another `combined` [default: FILM.png]
     #[arg(short, long)]
@@ -383,7 +423,7 @@ pub struct Develop {
 
 #[derive(Debug, Args)]
 pub struct Info {
-    /// Nori scene file; without it, the built-in scene
+    /// Nori scene file or film; without it, the built-in scene
     pub scene: Option<PathBuf>,
     /// Read only files below the scene's own folder: for scenes from people you do not know
     #[arg(long)]
@@ -567,6 +607,27 @@ fn parse_crop(text: &str) -> Result<Crop, String> {
     }
 }
 
+fn parse_samples(text: &str) -> Result<(u32, u32), String> {
+    let ranges: film::SampleRanges = text.parse().map_err(|e: film::FilmError| e.to_string())?;
+    let numbers = ranges.single().map(|r| (u32::try_from(r.start), u32::try_from(r.end)));
+    match numbers {
+        Some((Ok(start), Ok(end))) => Ok((start, end)),
+        _ => Err(format!("samples have numbers up to {}", u32::MAX)),
+    }
+}
+
+fn parse_noise(text: &str) -> Result<f64, String> {
+    let text = text.trim();
+    let error = match text.strip_suffix('%') {
+        Some(percent) => percent.trim().parse::<f64>().map(|p| p / 100.0),
+        None => text.parse(),
+    };
+    match error {
+        Ok(e) if e > 0.0 && e < 10.0 => Ok(e),
+        _ => Err("use a positive number such as 0.01, or 1%".into()),
+    }
+}
+
 fn parse_replay(text: &str) -> Result<([u32; 2], u32), String> {
     match numbers(text) {
         Some([x, y, sample]) => Ok(([x, y], sample)),
@@ -629,5 +690,13 @@ mod tests {
         assert!(parse_resolution("99999999x99999999").is_err());
         assert_eq!(parse_crop("1,2,3,4"), Ok(Crop { x: 1, y: 2, width: 3, height: 4 }));
         assert!(parse_crop("1,2,0,4").is_err() && parse_crop("1,2,3").is_err());
+    }
+
+    #[test]
+    fn ranges_of_samples_and_errors() {
+        assert_eq!(parse_samples("5..7"), Ok((5, 7)));
+        assert!(parse_samples("7..5").is_err() && parse_samples("0..4294967296").is_err());
+        assert_eq!((parse_noise("0.01"), parse_noise("2 %")), (Ok(0.01), Ok(0.02)));
+        assert!(parse_noise("0").is_err() && parse_noise("-1").is_err() && parse_noise("nan").is_err());
     }
 }

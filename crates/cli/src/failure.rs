@@ -26,7 +26,12 @@ impl From<Diagnostic> for Failure {
 
 impl From<RenderError> for Failure {
     fn from(e: RenderError) -> Self {
-        Self::Machine(e.to_string())
+        match e {
+            RenderError::Continue(why) => Diagnostic::error(why)
+                .hint("a film goes on with the scene, the size and the settings that it was begun with")
+                .into(),
+            other => Self::Machine(other.to_string()),
+        }
     }
 }
 

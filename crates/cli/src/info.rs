@@ -1,21 +1,72 @@
 use std::fmt::Write;
+use std::path::Path;
 use std::process::ExitCode;
+
+use caustica::film::{FilmCounts, FilmFacts, FilmRecord, Window};
 
 use caustica::scene::bvh::TreeQuality;
 use caustica::session::info::{SceneInfo, describe, outline};
 
+use serde::Serialize;
+
 use crate::args::Info;
 use crate::console::Console;
+use crate::develop::is_film_file;
 use crate::failure::Failure;
 use crate::loading;
 
 pub fn run(args: &Info, console: &mut Console) -> Result<ExitCode, Failure> {
+    if let Some(film) = args.scene.as_deref().filter(|path| is_film_file(path)) {
+        return film_info(film, console);
+    }
     let description = loading::description(args.scene.as_deref(), loading::trust(args.untrusted), console)?;
     let outline = outline(&description);
     let scene = loading::scene(description, TreeQuality::default(), console)?;
     let info = describe(&scene, outline);
     console.result(&info, || text(&info))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What `--json` prints of a film, beside warnings.
+#[derive(Serialize)]
+struct FilmInfo {
+    resolution: [u32; 2],
+    window: Window,
+    #[serde(flatten)]
+    facts: FilmFacts,
+    counts: FilmCounts,
+    noise: Option<f64>,
+}
+
+fn film_info(path: &Path, console: &Console) -> Result<ExitCode, Failure> {
+    let FilmRecord { film, facts } = FilmRecord::read(path).map_err(|e| Failure::input(path, e))?;
+    let layout = film.layout();
+    let noise = film.error_bars().map(|bars| bars.relative());
+    let resolution = [layout.width, layout.height];
+    let info = FilmInfo { resolution, window: layout.window, counts: film.counts(), facts, noise };
+    console.result(&info, || film_text(&info))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn film_text(info: &FilmInfo) -> String {
+    let ([width, height], w, facts) = (info.resolution, info.window, &info.facts);
+    let mut rows = vec![
+        ("film of", facts.provenance.scene.clone()),
+        ("picture", format!("{width} × {height} pixels")),
+        ("samples", format!("{} per pixel ({})", facts.samples.total(), facts.samples)),
+        ("time", format!("{:.1} s of rendering", facts.seconds)),
+    ];
+    if [w.width, w.height] != [width, height] {
+        rows.push(("crop", format!("{} × {} pixels from {}, {}", w.width, w.height, w.x, w.y)));
+    }
+    if let Some(noise) = info.noise {
+        rows.push(("error", format!("{:.2} % in a typical pixel (95 % certain)", 100.0 * noise)));
+    }
+    if info.counts.invalid + info.counts.clamped > 0 {
+        rows.push(("lost", format!("{} invalid, {} clamped", info.counts.invalid, info.counts.clamped)));
+    }
+    let settings = facts.provenance.settings.iter().map(|(name, value)| (name.as_str(), value.clone()));
+    rows.into_iter().chain(settings).map(|(name, value)| format!("{name:<14}{value}\n")).collect()
 }
 
 fn text(info: &SceneInfo) -> String {

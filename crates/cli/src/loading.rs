@@ -47,11 +47,22 @@ pub struct Opened {
 
 /// Loads what is to be rendered.
 pub fn open(source: &Source, console: &mut Console) -> Result<Opened, Failure> {
+    open_with(source, console, |_| ()).map(|(opened, ())| opened)
+}
+
+/// The same, with a look at the description as it is rendered.
+pub fn open_with<T>(
+    source: &Source,
+    console: &mut Console,
+    look: impl FnOnce(&mut Description) -> T,
+) -> Result<(Opened, T), Failure> {
     let mut description = description(source.scene.as_deref(), trust(source.untrusted), console)?;
     override_film(&mut description, source, console)?;
+    let seen = look(&mut description);
     let (integrator, samples) = (description.integrator, description.samples.max(1));
     let camera = description.camera.clone();
-    Ok(Opened { scene: scene(description, source.tree.into(), console)?, integrator, samples, camera })
+    let scene = scene(description, source.tree.into(), console)?;
+    Ok((Opened { scene, integrator, samples, camera }, seen))
 }
 
 /// `--resolution` and `--crop`.

@@ -1,6 +1,7 @@
 //! The `caustica` program: arguments in, pictures out. All the work is in the `caustica` library.
 
 mod args;
+mod checkpoint;
 mod compare;
 mod console;
 mod develop;
@@ -8,6 +9,7 @@ mod failure;
 mod info;
 mod interrupt;
 mod loading;
+mod merge;
 mod outputs;
 mod progress;
 mod prompt;
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         Command::Compare(a) => compare::run(&a, &mut console),
         Command::Pyramid(a) => pyramid::run(&a, &mut console),
         Command::Video(a) => video::run(&a, &mut console),
+        Command::Merge(a) => merge::run(&a, &console),
         Command::Develop(a) => develop::run(&a, &console),
         Command::Info(a) => info::run(&a, &mut console),
         Command::Test(a) => tests::run(&a, &mut console),

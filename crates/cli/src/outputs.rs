@@ -10,25 +10,43 @@ const OTHER_PICTURES: [&str; 10] = ["jpg", "jpeg", "tif", "tiff", "bmp", "gif", 
 
 /// The files that a render writes.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Outputs {
-    pub exr: PathBuf,
-    pub png: PathBuf,
+pub enum Outputs {
+    /// What it looks like, with all layers and to look at.
+    Pictures { exr: PathBuf, png: PathBuf },
+    /// A film that can be merged with others.
+    Film(PathBuf),
 }
 
 impl Outputs {
-    /// The files that the arguments ask for; both can be written.
+    /// The files that the arguments ask for; all can be written.
     pub fn new(args: &Render) -> Result<Self, Failure> {
         let stem = match (&args.output, &args.source.scene) {
             (Some(output), _) => stem(output)?,
             (None, Some(scene)) => scene.with_extension(""),
             (None, None) => PathBuf::from("caustica"),
         };
-        let outputs = Self { exr: with(&stem, ".exr"), png: with(&stem, ".png") };
-        for file in [&outputs.exr, &outputs.png] {
+        let outputs = match &args.output {
+            Some(film) if is_film(film) => Self::Film(film.clone()),
+            _ => Self::Pictures { exr: with(&stem, ".exr"), png: with(&stem, ".png") },
+        };
+        for file in outputs.files() {
             check_writable(file).map_err(|e| Failure::output(file, e))?;
         }
         Ok(outputs)
     }
+
+    /// All of them.
+    pub fn files(&self) -> Vec<&Path> {
+        match self {
+            Self::Pictures { exr, png } => vec![exr, png],
+            Self::Film(film) => vec![film],
+        }
+    }
+}
+
+/// Whether a file is a film by its name.
+pub fn is_film(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("film"))
 }
 
 /// The output without its extension, if it is a picture's.

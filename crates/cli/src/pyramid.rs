@@ -48,6 +48,7 @@ pub fn run(args: &Arguments, console: &mut Console) -> Result<ExitCode, Failure>
         samples: args.length.samples(opened.samples),
         time: args.length.time,
         threads: args.source.threads.map(usize::from),
+        ..RenderOptions::default()
     };
     let pyramid = Pyramid::new(&opened.scene, options, args.rows)?;
     let interrupts = Interrupts::listen();

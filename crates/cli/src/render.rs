@@ -1,18 +1,19 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use caustica::description::Integrator;
-use caustica::film::{write_exr, write_png};
+use caustica::description::{Description, Integrator};
+use caustica::film::{Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
-use caustica::session::{integrator_by_name, integrator_name};
-use caustica::{LightImage, Picture, RenderOptions, Report, Scene, Session, Settings};
+use caustica::session::{Stages, content_hash, integrator_by_name, integrator_name, provenance};
+use caustica::{LightImage, Picture, Progress, RenderOptions, Report, Scene, Session, Settings};
 use serde::Serialize;
 
 use crate::args::{LightImageChoice, Look, Method, Render};
+use crate::checkpoint::{self, Checkpoint};
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, is_film};
 use crate::progress::Bar;
 use crate::{loading, prompt, replay};
 
@@ -21,36 +22,57 @@ use crate::{loading, prompt, replay};
 struct Outcome<'a> {
     #[serde(flatten)]
     report: &'a Report,
+    /// The first sample of each pixel, and the one after the last.
+    range: [u64; 2],
     /// Width and height of the full picture.
     resolution: [u32; 2],
     /// The part of it that was rendered: x, y, width, height.
     window: [u32; 4],
-    outputs: [String; 2],
-    light_image: String,
+    outputs: Vec<String>,
+    /// What became of the light image in the picture, if there is one.
+    light_image: Option<String>,
 }
 
 pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
-    let opened = loading::open(&args.source, console)?;
-    let (scene, samples) = (opened.scene, opened.samples);
+    let keeps_film = args.checkpoint.file.is_some() || args.output.as_deref().is_some_and(is_film);
+    let hash = |d: &mut Description| keeps_film.then(|| content_hash(d));
+    let (opened, hash) = loading::open_with(&args.source, console, hash)?;
+    let scene = opened.scene;
     let settings = settings(&args.method, &scene, opened.integrator);
     if let Some(sample) = args.replay {
         return replay::run(&scene, settings, sample, console);
     }
     let outputs = Outputs::new(args)?;
-    let options = RenderOptions {
-        settings,
-        samples: args.length.samples(samples),
-        time: args.length.time,
-        threads: args.source.threads.map(usize::from),
-    };
-    let session = Session::new(&scene, options)?;
+    let provenance = hash.map(|hash| provenance(&args.source.name(), &hash, &settings));
+    let (checkpoint, record) = Checkpoint::open(&args.checkpoint)?.unzip();
+    let options = options(args, settings, opened.samples);
+    let session = checkpoint::session(&scene, options, (record.flatten(), provenance.as_ref()))?;
     console.warn(setting_warnings(args, &session));
     let interrupts = Interrupts::listen();
-    let report = run_with_bar(&session, &interrupts, console)?;
-    let picture = session.film().develop();
-    let light_image = save(&session, &picture, &report, (args, &outputs), &interrupts)?;
-    tell(console, (&picture, light_image), &report, &outputs)?;
+    let kept = checkpoint.as_ref().zip(provenance.as_ref());
+    let report = run_with_bar(&session, args.noise, (&interrupts, console), kept)?;
+    let kept = kept.map_or(Ok(()), |(checkpoint, of)| checkpoint.write(&session, (of, &report)));
+    let light_image = match (&outputs, &provenance) {
+        (Outputs::Film(path), Some(of)) => {
+            checkpoint::write_output(path, &session, (of, &report))?;
+            None
+        }
+        _ => Some(save(&session, &report, (args, &outputs), &interrupts)?),
+    };
+    kept?;
+    tell(console, &session, &report, (&outputs, light_image))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What is rendered, where the scene asks for `usual` samples.
+fn options(args: &Render, settings: Settings, usual: u32) -> RenderOptions {
+    let (first_sample, samples) = match (args.samples, args.noise, args.length.spp) {
+        (Some((start, end)), ..) => (start, end - start),
+        (None, Some(_), None) => (0, u32::MAX),
+        _ => (0, args.length.samples(usual)),
+    };
+    let threads = args.source.threads.map(usize::from);
+    RenderOptions { settings, first_sample, samples, time: args.length.time, threads }
 }
 
 /// The settings that the arguments ask for; the scene's own integrator if they name none.
@@ -111,14 +133,23 @@ fn setting_warnings(args: &Render, session: &Session<'_>) -> Vec<Diagnostic> {
 
 fn run_with_bar(
     session: &Session<'_>,
-    interrupts: &Interrupts,
-    console: &Console,
+    noise: Option<f64>,
+    (interrupts, console): (&Interrupts, &Console),
+    kept: Option<(&Checkpoint, &Provenance)>,
 ) -> Result<Report, Failure> {
     let bar = Bar::new(console.is_talkative());
-    let report = session.run(&interrupts.control, |p| {
+    let stages = Stages { noise, every: kept.map(|(checkpoint, _)| checkpoint.every) };
+    let progress = |p: &Progress| {
         bar.tell_stop(&interrupts.control);
         bar.show(p);
-    });
+    };
+    let save = |report: &Report| {
+        let note = kept.and_then(|(checkpoint, of)| checkpoint.try_write(session, (of, report)));
+        if let Some(note) = note {
+            bar.note(&note);
+        }
+    };
+    let report = session.run_in_stages(&stages, &interrupts.control, (progress, save));
     bar.finish();
     Ok(report?)
 }
@@ -127,16 +158,16 @@ fn run_with_bar(
 /// before anyone is asked: waiting for an answer must not cost the work of hours.
 fn save(
     session: &Session<'_>,
-    picture: &Picture,
     report: &Report,
     (args, outputs): (&Render, &Outputs),
     interrupts: &Interrupts,
 ) -> Result<LightImage, Failure> {
+    let Outputs::Pictures { exr, png } = outputs else { return Ok(LightImage::On) };
+    let picture = &session.film().develop();
     let mut metadata = session.metadata(report);
     metadata.set("scene", args.source.name());
-    let save_exr = |light_image| {
-        write_exr(&outputs.exr, picture, light_image, &metadata).map_err(|e| Failure::output(&outputs.exr, e))
-    };
+    let save_exr =
+        |light_image| write_exr(exr, picture, light_image, &metadata).map_err(|e| Failure::output(exr, e));
     if args.light_image == LightImageChoice::Ask {
         save_exr(LightImage::On)?;
         interrupts.stop_at_once();
@@ -145,7 +176,7 @@ fn save(
     if args.light_image != LightImageChoice::Ask || light_image != LightImage::On {
         save_exr(light_image)?;
     }
-    save_png(&outputs.png, picture, light_image, args.look)?;
+    save_png(png, picture, light_image, args.look)?;
     Ok(light_image)
 }
 
@@ -158,26 +189,29 @@ pub fn save_png(to: &Path, picture: &Picture, light_image: LightImage, look: Loo
 
 fn tell(
     console: &Console,
-    (picture, light_image): (&Picture, LightImage),
+    session: &Session<'_>,
     report: &Report,
-    outputs: &Outputs,
+    (outputs, light_image): (&Outputs, Option<LightImage>),
 ) -> Result<(), Failure> {
-    let w = picture.window;
+    let layout = session.film().layout();
+    let (w, range) = (layout.window, session.range());
     let outcome = Outcome {
         report,
-        resolution: [picture.width, picture.height],
+        range: [range.start, range.end],
+        resolution: [layout.width, layout.height],
         window: [w.x, w.y, w.width, w.height],
-        outputs: [&outputs.exr, &outputs.png].map(|p| p.display().to_string()),
-        light_image: light_image.to_string(),
+        outputs: outputs.files().iter().map(|p| p.display().to_string()).collect(),
+        light_image: light_image.map(|l| l.to_string()),
     };
     console.result(&outcome, || summary(&outcome))
 }
 
 fn summary(outcome: &Outcome<'_>) -> String {
-    let Outcome { report, outputs: [exr, png], .. } = outcome;
+    let Outcome { report, range: [start, end], outputs, .. } = outcome;
     let plural = |n: u64| if n == 1 { "" } else { "s" };
+    let range = if *start == 0 { String::new() } else { format!(" ({start}..{end})") };
     let mut text = format!(
-        "{}: {} sample{} per pixel in {:.1} s ({:.2} M samples/s on {} thread{}){}\n",
+        "{}: {} sample{} per pixel{range} in {:.1} s ({:.2} M samples/s on {} thread{}){}\n",
         report.integrator,
         report.samples,
         plural(report.samples),
@@ -187,11 +221,14 @@ fn summary(outcome: &Outcome<'_>) -> String {
         plural(report.threads as u64),
         if report.stopped { ", stopped early" } else { "" },
     );
+    if let Some(noise) = report.noise {
+        text += &format!("error of a typical pixel: {:.2} % (95 % certain)\n", 100.0 * noise);
+    }
     if report.invalid > 0 {
         text += &format!("{} contributions were not finite numbers and are left out\n", report.invalid);
     }
     if report.clamped > 0 {
         text += &format!("{} contributions were too large for the film and are cut\n", report.clamped);
     }
-    text + &format!("wrote {exr} and {png}")
+    text + &format!("wrote {}", outputs.join(" and "))
 }

@@ -125,7 +125,12 @@ fn converging(a: &args::Converge, opened: &Opened) -> Converge {
 }
 
 fn render(clip: &Clip, settings: Settings, samples: u32) -> RenderOptions {
-    RenderOptions { settings, samples, time: None, threads: clip.source.threads.map(usize::from) }
+    RenderOptions {
+        settings,
+        samples,
+        threads: clip.source.threads.map(usize::from),
+        ..RenderOptions::default()
+    }
 }
 
 fn output(args: &Video) -> Result<PathBuf, Failure> {

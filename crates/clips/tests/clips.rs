@@ -48,7 +48,7 @@ impl Bench {
 
 fn render(samples: u32) -> RenderOptions {
     let settings = Settings { max_depth: Some(5), ..Settings::default() };
-    RenderOptions { settings, samples, time: None, threads: Some(2) }
+    RenderOptions { settings, samples, threads: Some(2), ..RenderOptions::default() }
 }
 
 #[test]

@@ -232,7 +232,11 @@ fn session<'a>(
     settings: &Settings,
     threads: Option<usize>,
 ) -> Result<Session<'a>, RenderError> {
-    Session::new(scene, RenderOptions { settings: settings.clone(), samples: u32::MAX, time: None, threads })
+    let samples = u32::MAX;
+    Session::new(
+        scene,
+        RenderOptions { settings: settings.clone(), samples, threads, ..RenderOptions::default() },
+    )
 }
 
 /// The reference, in two halves of different seeds, whose difference tells its error.

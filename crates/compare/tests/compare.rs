@@ -83,8 +83,12 @@ fn pauses_change_nothing() {
     let given = || ReferenceChoice::Given(vec![Rgb::WHITE; open_pixels()], "white".into());
     let whole = run(&["bdpt"], samples(13), given()).unwrap();
     let scene = scene();
-    let options =
-        caustica_render::RenderOptions { settings: base(), samples: 13, time: None, threads: Some(1) };
+    let options = caustica_render::RenderOptions {
+        settings: base(),
+        samples: 13,
+        threads: Some(1),
+        ..Default::default()
+    };
     let session = caustica_render::Session::new(&scene, options).unwrap();
     session.run(&Control::default(), |_| ()).unwrap();
     assert_eq!(whole.entrants[0].picture, session.film().develop());

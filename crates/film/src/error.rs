@@ -29,6 +29,9 @@ pub enum FilmError {
     /// Sizes that make no film, or that do not fit together.
     #[error("{0}")]
     Layout(String),
+    /// Films that cannot be merged.
+    #[error("{0}")]
+    Merge(String),
     /// A file does not hold what it should.
     #[error("{}: {message}", path.display())]
     Format {

@@ -9,7 +9,7 @@ use caustica_math::{Rgb, Vec2};
 use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
-use crate::layout::FilmLayout;
+use crate::layout::{FilmLayout, Window};
 use crate::picture::Picture;
 use crate::quantum::Quantum;
 
@@ -32,6 +32,18 @@ pub struct FilmCounts {
     pub invalid: u64,
     /// Contributions to a pixel that were too large for the quantum, and were clamped.
     pub clamped: u64,
+}
+
+impl FilmCounts {
+    /// The counts of both together.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            eye_samples: self.eye_samples.saturating_add(other.eye_samples),
+            light_samples: self.light_samples.saturating_add(other.light_samples),
+            invalid: self.invalid.saturating_add(other.invalid),
+            clamped: self.clamped.saturating_add(other.clamped),
+        }
+    }
 }
 
 /// Sums of contributions to the pixels of a window, in two layers.
@@ -67,18 +79,9 @@ impl Film {
     /// An empty film. Sizes that make no sense or need more memory than there is are errors.
     pub fn new(layout: FilmLayout) -> Result<Self, FilmError> {
         layout.check()?;
-        let window = layout.window;
-        let too_large = || FilmError::TooLarge {
-            width: window.width,
-            height: window.height,
-            megabytes: (window.pixels() * size_of::<Sums>() as u64).div_ceil(1_000_000),
-        };
-        let count = match usize::try_from(window.pixels()) {
-            Ok(count) if window.pixels() <= MOST_PIXELS && fits_memory(window.pixels()) => count,
-            _ => return Err(too_large()),
-        };
+        let count = Self::check_memory(layout.window, 1)?;
         let mut pixels = Vec::new();
-        pixels.try_reserve_exact(count).map_err(|_| too_large())?;
+        pixels.try_reserve_exact(count).map_err(|_| too_large(layout.window, 1))?;
         pixels.resize_with(count, Sums::default);
         Ok(Self {
             layout,
@@ -89,6 +92,15 @@ impl Film {
             invalid: AtomicU64::new(0),
             clamped: AtomicU64::new(0),
         })
+    }
+
+    /// How many pixels a window has, if the machine has the memory for `films` films of them, and for developing
+    /// them.
+    pub(crate) fn check_memory(window: Window, films: u64) -> Result<usize, FilmError> {
+        match usize::try_from(window.pixels()) {
+            Ok(count) if window.pixels() <= MOST_PIXELS && fits_memory(films * window.pixels()) => Ok(count),
+            _ => Err(too_large(window, films)),
+        }
     }
 
     /// A film with the sums and counts of an earlier one.
@@ -149,7 +161,7 @@ impl Film {
     pub fn splat_into(&self, buffer: &mut LightBuffer, filter: &PixelFilter, position: Vec2, value: Rgb) {
         self.splat(filter, position, value, |index, counts| {
             for (sum, count) in buffer.sums[index].iter_mut().zip(counts) {
-                *sum = sum.wrapping_add(count);
+                *sum = sum.saturating_add(count);
             }
         });
     }
@@ -206,7 +218,7 @@ impl Film {
     fn add_counts_to(&self, index: usize, layer: usize, counts: [i64; 3]) {
         for (sum, count) in self.pixels[index][layer..layer + 3].iter().zip(counts) {
             if count != 0 {
-                sum.fetch_add(count, Relaxed);
+                add(sum, count);
             }
         }
     }
@@ -256,17 +268,22 @@ impl Film {
 
     /// Adds all that went into `other`, a film of the same layout.
     pub fn merge(&self, other: &Film) -> Result<(), FilmError> {
-        if self.layout != other.layout {
-            return Err(FilmError::Layout(format!(
-                "films of different layouts cannot be merged: {:?} and {:?}",
-                self.layout, other.layout
-            )));
-        }
+        self.check_same_layout(other)?;
         for (ours, theirs) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()) {
-            ours.fetch_add(theirs.load(Relaxed), Relaxed);
+            add(ours, theirs.load(Relaxed));
         }
         self.add_counts(other.counts());
         Ok(())
+    }
+
+    pub(crate) fn check_same_layout(&self, other: &Film) -> Result<(), FilmError> {
+        if self.layout == other.layout {
+            return Ok(());
+        }
+        Err(FilmError::Layout(format!(
+            "films of different layouts cannot be merged: {:?} and {:?}",
+            self.layout, other.layout
+        )))
     }
 
     /// The sums in quanta, pixel by pixel: three channels of the eye image, then three of the light
@@ -287,27 +304,57 @@ impl Film {
         let head = [width, height, window.x, window.y, window.width, window.height, quantum_exponent as u32];
         let tail = [counts.eye_samples, counts.light_samples, counts.invalid, counts.clamped];
         let sums = self.sums().flatten().map(|sum| sum as u64);
-        let mix = |hash: u64, word: u64| mix64(hash.wrapping_mul(3).wrapping_add(1) ^ word);
-        head.into_iter().map(u64::from).chain(tail).chain(sums).fold(0, mix)
+        head.into_iter().map(u64::from).chain(tail).chain(sums).fold(0, combine)
     }
 
     /// The picture so far: each layer divided by its own count. A layer without samples is black.
     pub fn develop(&self) -> Picture {
-        let counts = self.counts();
-        let layer = |first: usize, samples: u64| {
-            let scale = if samples == 0 { 0.0 } else { self.quantum.size() / samples as f64 };
-            let develop = |sum: i64| (sum as f64 * scale) as f32;
-            self.sums().map(|s| Rgb([s[first], s[first + 1], s[first + 2]].map(develop))).collect()
-        };
-        Picture {
-            width: self.layout.width,
-            height: self.layout.height,
-            window: self.layout.window,
-            eye_samples: counts.eye_samples,
-            light_samples: counts.light_samples,
-            eye: layer(EYE, counts.eye_samples),
-            light: layer(LIGHT, counts.light_samples),
-        }
+        develop(&self.layout, self.counts(), || self.sums())
+    }
+}
+
+/// The picture of these sums, without error bars.
+pub(crate) fn develop<I: Iterator<Item = [i64; 6]>>(
+    layout: &FilmLayout,
+    counts: FilmCounts,
+    sums: impl Fn() -> I,
+) -> Picture {
+    let quantum = Quantum::new(layout.quantum_exponent);
+    let layer = |first: usize, samples: u64| {
+        let scale = if samples == 0 { 0.0 } else { quantum.size() / samples as f64 };
+        let develop = |sum: i64| (sum as f64 * scale) as f32;
+        sums().map(|s| Rgb([s[first], s[first + 1], s[first + 2]].map(develop))).collect()
+    };
+    Picture {
+        width: layout.width,
+        height: layout.height,
+        window: layout.window,
+        eye_samples: counts.eye_samples,
+        light_samples: counts.light_samples,
+        eye: layer(EYE, counts.eye_samples),
+        light: layer(LIGHT, counts.light_samples),
+        error: None,
+    }
+}
+
+/// A hash of two words.
+pub(crate) fn combine(hash: u64, word: u64) -> u64 {
+    mix64(hash.wrapping_mul(3).wrapping_add(1) ^ word)
+}
+
+/// `films` films of that window need more memory than there is.
+fn too_large(window: Window, films: u64) -> FilmError {
+    let bytes = window.pixels().saturating_mul(films * size_of::<Sums>() as u64);
+    FilmError::TooLarge { width: window.width, height: window.height, megabytes: bytes.div_ceil(1_000_000) }
+}
+
+/// Adds, but for sums beyond 64 bits, which stay at the end of what there is. Whoever sees a sum wrap around puts it
+/// there, so that without negative counts this too depends on no order.
+#[inline]
+fn add(sum: &AtomicI64, count: i64) {
+    let before = sum.fetch_add(count, Relaxed);
+    if before.checked_add(count).is_none() {
+        sum.store(if count < 0 { i64::MIN } else { i64::MAX }, Relaxed);
     }
 }
 

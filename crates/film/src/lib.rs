@@ -6,20 +6,26 @@
 //! or not at all.
 
 mod display;
+mod dual;
 mod error;
+mod error_bars;
 mod film;
 mod layout;
 mod openexr;
 mod output;
 mod picture;
 mod quantum;
+mod record;
 mod tonemap;
 
 pub use display::{Develop, write_png, write_srgb_png};
+pub use dual::{DualFilm, half_of};
 pub use error::FilmError;
+pub use error_bars::ErrorBars;
 pub use film::{Film, FilmCounts, LightBuffer, available_memory};
 pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr, write_layers};
 pub use output::{check_writable, write_atomically, write_file};
 pub use picture::{LightImage, Picture};
+pub use record::{FilmFacts, FilmRecord, Provenance, SampleRanges, write_film};
 pub use tonemap::{ToneMap, to_display};

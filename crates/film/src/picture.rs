@@ -62,6 +62,9 @@ pub struct Picture {
     pub eye: Vec<Rgb>,
     /// The light image, row by row.
     pub light: Vec<Rgb>,
+    /// Half the width of the 95 % interval around eye and light image together, where it is known: see
+    /// [`ErrorBars`](crate::ErrorBars).
+    pub error: Option<Vec<Rgb>>,
 }
 
 impl Picture {
@@ -78,7 +81,8 @@ impl Picture {
     pub(crate) fn check(&self) -> Result<(), FilmError> {
         check_window(self.width, self.height, self.window)?;
         check_layer(self.eye.len(), self.window)?;
-        check_layer(self.light.len(), self.window)
+        check_layer(self.light.len(), self.window)?;
+        self.error.as_ref().map_or(Ok(()), |error| check_layer(error.len(), self.window))
     }
 }
 
@@ -96,6 +100,7 @@ mod tests {
             light_samples: 1,
             eye: vec![Rgb::new(1.0, 2.0, 3.0)],
             light: vec![Rgb::splat(0.5)],
+            error: None,
         };
         for (name, expected) in [("on", [1.5, 2.5, 3.5]), ("off", [1.0, 2.0, 3.0]), ("only", [0.5; 3])] {
             let choice: LightImage = name.parse().unwrap();

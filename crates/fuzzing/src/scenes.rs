@@ -66,7 +66,7 @@ fn renders_soundly(scene: &Scene, settings: &Settings) {
         };
         let (one, two) = (render(1), render(2));
         assert!(one.film().bits_equal(two.film()), "{name}: one thread and two differ");
-        assert_eq!(one.film().invalid(), 0, "{name}: contributions that are no numbers");
+        assert_eq!(one.film().counts().invalid, 0, "{name}: contributions that are no numbers");
         let picture = one.film().develop();
         let may_be_negative = matches!(scene.film.filter, Filter::Mitchell { .. });
         for (layer, pixels) in [("eye", &picture.eye), ("light", &picture.light)] {

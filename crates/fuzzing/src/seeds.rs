@@ -96,6 +96,7 @@ fn film([width, height]: [u32; 2], [x, y, w, h]: [u32; 4]) -> Vec<u8> {
         light_samples: 4,
         eye: ramp(0.25),
         light: ramp(0.5),
+        error: None,
     };
     let mut facts = Metadata::new();
     facts.set("seed", 7);

@@ -106,7 +106,7 @@ pub fn describe(scene: &Scene, outline: Outline) -> SceneInfo {
             tree: scene.bvh().memory(),
             surfaces: scene.surfaces().memory(),
             images: pixels,
-            film: window.width as usize * window.height as usize * 48,
+            film: window.width as usize * window.height as usize * 96,
         },
     }
 }

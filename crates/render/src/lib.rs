@@ -3,13 +3,17 @@
 
 pub mod info;
 mod names;
+mod provenance;
 pub mod pyramid;
 mod queue;
 pub mod replay;
 pub mod scene_tests;
 mod session;
+mod stages;
 mod workers;
 
 pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};
+pub use provenance::{content_hash, provenance};
 pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session, available_threads};
+pub use stages::Stages;
 pub use workers::Budget;

@@ -112,9 +112,9 @@ impl<'a> Pyramid<'a> {
     ) -> Result<f64, RenderError> {
         let start = Instant::now();
         let threads = self.options.thread_count();
-        let (window, first) = (self.whole.layout().window, self.whole.eye_samples());
-        let added =
-            Workers { window, first, budget, threads, control }.run(|units| self.work(units), progress)?;
+        let (window, done) = (self.whole.layout().window, self.whole.eye_samples());
+        let workers = Workers { window, start: 0, done, budget, threads, control };
+        let added = workers.run(|units| self.work(units), progress)?;
         let light = if self.kernel.has_light_image() { added } else { 0 };
         let films = self.layers.iter().flat_map(|l| [&l.weighted, &l.unweighted]);
         films.chain([&self.rest, &self.whole]).for_each(|film| film.finish_samples(added, light));

@@ -1,7 +1,11 @@
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use caustica_film::{Film, FilmError, FilmLayout, LightBuffer, Metadata, Window};
+use caustica_film::{
+    DualFilm, Film, FilmError, FilmFacts, FilmLayout, FilmRecord, LightBuffer, Metadata, Provenance, Window,
+    half_of,
+};
 use caustica_math::{Rgb, Sampler, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
@@ -9,6 +13,7 @@ use caustica_transport::{Heuristic, Kernel, Scratch, Settings, Sink};
 use serde::Serialize;
 
 use crate::names::integrator_name;
+use crate::provenance::facts;
 use crate::workers::{Budget, Units, Workers, pixels};
 
 /// What a session renders, and for how long.
@@ -16,6 +21,8 @@ use crate::workers::{Budget, Units, Workers, pixels};
 pub struct RenderOptions {
     /// The algorithm with its settings.
     pub settings: Settings,
+    /// The number of each pixel's first sample: 0, or more to render another part of what is merged later.
+    pub first_sample: u32,
     /// Samples per pixel, at most.
     pub samples: u32,
     /// Stops with the pass that runs when this is over.
@@ -38,7 +45,7 @@ impl RenderOptions {
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        Self { settings: Settings::default(), samples: 64, time: None, threads: None }
+        Self { settings: Settings::default(), first_sample: 0, samples: 64, time: None, threads: None }
     }
 }
 
@@ -96,6 +103,9 @@ pub struct Report {
     pub invalid: u64,
     /// Contributions cut because they were too large for the film.
     pub clamped: u64,
+    /// The relative error that a typical pixel does not exceed with 95 % certainty, where it is known: see
+    /// [`ErrorBars::relative`](caustica_film::ErrorBars::relative).
+    pub noise: Option<f64>,
 }
 
 /// Why a session cannot be made.
@@ -107,18 +117,23 @@ pub enum RenderError {
     /// No threads could be started.
     #[error("cannot start a worker thread: {0}")]
     Threads(#[source] std::io::Error),
+    /// A film that is to be continued.
+    #[error("{0}")]
+    Continue(String),
 }
 
 /// A film being rendered from a scene.
 #[derive(Debug)]
 pub struct Session<'a> {
     kernel: Kernel<'a>,
-    film: Film,
+    film: DualFilm,
     options: RenderOptions,
+    /// Seconds that went into the film before this session.
+    seconds: f64,
 }
 
 /// Threads get buffers of their own for splats while all of them together take no more bytes than this.
-const MOST_BUFFERED: u64 = 128 << 20;
+const MOST_BUFFERED: u64 = 256 << 20;
 
 impl<'a> Session<'a> {
     /// A session with an empty film.
@@ -126,13 +141,51 @@ impl<'a> Session<'a> {
     /// # Errors
     /// If the film does not fit into memory.
     pub fn new(scene: &'a Scene, options: RenderOptions) -> Result<Self, RenderError> {
-        let film = Film::new(film_layout(scene, &options.settings.integrator))?;
-        Ok(Self { kernel: Kernel::new(scene, options.settings.clone()), film, options })
+        let film = DualFilm::new(film_layout(scene, &options.settings.integrator))?;
+        Ok(Self { kernel: Kernel::new(scene, options.settings.clone()), film, options, seconds: 0.0 })
+    }
+
+    /// A session that goes on where a film ends: with the same scene, settings and first sample, the film becomes
+    /// what it would have become without a pause.
+    ///
+    /// # Errors
+    /// A film of something else than `provenance`, or whose samples are not those from the first one on.
+    pub fn resume(
+        scene: &'a Scene,
+        options: RenderOptions,
+        (record, provenance): (FilmRecord, &Provenance),
+    ) -> Result<Self, RenderError> {
+        let refuse = |why: String| Err(RenderError::Continue(why));
+        if let Some(what) = record.facts.provenance.difference(provenance) {
+            return refuse(format!("the film cannot be continued: {what} changed"));
+        }
+        let first = u64::from(options.first_sample);
+        if record.facts.samples.single().is_none_or(|r| !r.is_empty() && r.start != first) {
+            let samples = &record.facts.samples;
+            return refuse(format!("the film holds the samples {samples}, not those from {first} on"));
+        }
+        if *record.film.layout() != film_layout(scene, &options.settings.integrator) {
+            return refuse("the film cannot be continued: its size or its quantum changed".to_owned());
+        }
+        let kernel = Kernel::new(scene, options.settings.clone());
+        Ok(Self { kernel, film: record.film, options, seconds: record.facts.seconds })
     }
 
     /// The film.
-    pub fn film(&self) -> &Film {
+    pub fn film(&self) -> &DualFilm {
         &self.film
+    }
+
+    /// What is known of the film now, after so many seconds of this session: what a film file needs beside it.
+    pub fn facts(&self, provenance: &Provenance, seconds: f64) -> FilmFacts {
+        let (samples, seconds) = (self.range().into(), self.seconds + seconds);
+        FilmFacts { provenance: provenance.clone(), samples, seconds }
+    }
+
+    /// The samples in the film.
+    pub fn range(&self) -> Range<u64> {
+        let first = u64::from(self.options.first_sample);
+        first..first + self.samples()
     }
 
     /// The kernel.
@@ -142,17 +195,11 @@ impl<'a> Session<'a> {
 
     /// What to write beside the picture: how it was made.
     pub fn metadata(&self, report: &Report) -> Metadata {
-        let settings = &self.options.settings;
-        let mut m = Metadata::new();
-        m.set("integrator", report.integrator);
-        m.set("seed", report.seed);
-        m.set("sampler", sampler_name(settings.sampler));
+        let mut m: Metadata = facts(&self.options.settings).into_iter().collect();
         m.set("seconds", format!("{:.3}", report.seconds));
-        m.set("version", env!("CARGO_PKG_VERSION"));
-        m.set("strategies", &settings.strategies);
-        m.set("heuristic", heuristic_name(settings.heuristic));
-        m.set("rouletteDepth", settings.roulette_start());
-        m.set("maxDepth", settings.max_depth.map_or("unlimited".to_owned(), |d| d.to_string()));
+        if let Some(noise) = report.noise {
+            m.set("noise", format!("{noise:.5}"));
+        }
         m
     }
 
@@ -180,20 +227,29 @@ impl<'a> Session<'a> {
         let start = Instant::now();
         let window = self.film.layout().window;
         let threads = self.options.thread_count();
-        let per_thread = LightBuffer::memory(window.pixels());
+        let per_thread = 2 * LightBuffer::memory(window.pixels());
         let buffered = self.kernel.has_light_image() && per_thread * threads as u64 <= MOST_BUFFERED;
-        let workers = Workers { window, first: self.samples(), budget, threads, control };
+        let (first, done) = (u64::from(self.options.first_sample), self.samples());
+        let samples = budget.samples.min(u32::MAX - self.options.first_sample);
+        let workers =
+            Workers { window, start: first, done, budget: Budget { samples, ..budget }, threads, control };
         let added = workers.run(|units| self.work(units, buffered), progress)?;
-        let eye = if self.options.settings.integrator == Integrator::Light { 0 } else { added };
-        let light = if self.kernel.has_light_image() { added } else { 0 };
-        self.film.finish_samples(eye, light);
+        let (eye, light) =
+            (self.options.settings.integrator != Integrator::Light, self.kernel.has_light_image());
+        self.film.finish_passes(first + done..first + done + added, eye, light);
         let stopped = control.is_stopped() && self.samples() < u64::from(budget.samples);
         Ok(Report { stopped, ..self.report(added, start.elapsed(), threads) })
     }
 
+    /// For how long the options say.
+    pub(crate) fn budget(&self) -> Budget {
+        self.options.budget()
+    }
+
     /// Samples per pixel in the film.
-    fn samples(&self) -> u64 {
-        self.film.eye_samples().max(self.film.light_samples())
+    pub(crate) fn samples(&self) -> u64 {
+        let counts = self.film.counts();
+        counts.eye_samples.max(counts.light_samples)
     }
 
     /// The report on a run of `added` samples that was not stopped.
@@ -208,24 +264,29 @@ impl<'a> Session<'a> {
             samples_per_second: added as f64 * pixels / seconds.max(1e-9),
             threads,
             seed: self.options.settings.seed,
-            invalid: self.film.invalid(),
-            clamped: self.film.clamped(),
+            invalid: self.film.counts().invalid,
+            clamped: self.film.counts().clamped,
+            noise: None,
         }
     }
 
     /// Renders units until there are none left. `buffered` is whether splats are gathered apart.
     fn work(&self, units: Units<'_>, buffered: bool) {
         let mut scratch = Scratch::default();
-        let mut buffer = if buffered { self.film.light_buffer() } else { None };
+        let halves = self.film.halves();
+        let mut buffers = halves.each_ref().map(|f| if buffered { f.light_buffer() } else { None });
         for (pass, tile) in units {
+            let half = half_of(pass.into());
             for pixel in pixels(tile) {
-                let (film, kernel) = (&self.film, &self.kernel);
-                let mut sink = FilmSink { film, kernel, buffer: buffer.as_mut(), pixel };
+                let (film, kernel) = (&halves[half], &self.kernel);
+                let mut sink = FilmSink { film, kernel, buffer: buffers[half].as_mut(), pixel };
                 self.kernel.sample(pixel, pass, &mut scratch, &mut sink);
             }
         }
-        if let Some(buffer) = &mut buffer {
-            self.film.flush(buffer);
+        for (film, buffer) in halves.iter().zip(&mut buffers) {
+            if let Some(buffer) = buffer {
+                film.flush(buffer);
+            }
         }
     }
 }
@@ -254,14 +315,14 @@ impl Sink for FilmSink<'_, '_> {
     }
 }
 
-fn sampler_name(sampler: Sampler) -> &'static str {
+pub(crate) fn sampler_name(sampler: Sampler) -> &'static str {
     match sampler {
         Sampler::Independent => "independent",
         Sampler::Sobol => "sobol",
     }
 }
 
-fn heuristic_name(heuristic: Heuristic) -> &'static str {
+pub(crate) fn heuristic_name(heuristic: Heuristic) -> &'static str {
     match heuristic {
         Heuristic::Balance => "balance",
         Heuristic::Power => "power",

@@ -29,8 +29,10 @@ pub struct Budget {
 /// Work on the passes of a window.
 pub(crate) struct Workers<'a> {
     pub window: Window,
-    /// Passes that are done already.
-    pub first: u64,
+    /// The number of the first sample.
+    pub start: u64,
+    /// Passes that are done already: the budget counts them.
+    pub done: u64,
     pub budget: Budget,
     pub threads: usize,
     pub control: &'a Control,
@@ -38,6 +40,7 @@ pub(crate) struct Workers<'a> {
 
 /// The units that one worker gets: a pass and a tile of it.
 pub(crate) struct Units<'a> {
+    start: u64,
     queue: &'a Queue,
     tiles: &'a [Window],
     finished: bool,
@@ -49,7 +52,7 @@ impl Iterator for Units<'_> {
     fn next(&mut self) -> Option<Self::Item> {
         let (pass, unit) = self.queue.next(self.finished)?;
         self.finished = true;
-        Some((pass as u32, self.tiles[unit as usize]))
+        Some(((self.start + pass) as u32, self.tiles[unit as usize]))
     }
 }
 
@@ -64,15 +67,15 @@ impl Workers<'_> {
     ) -> Result<u64, RenderError> {
         let start = Instant::now();
         let tiles = tiles(self.window);
-        let queue = Queue::new(tiles.len() as u64, self.first, u64::from(self.budget.samples));
+        let queue = Queue::new(tiles.len() as u64, self.done, u64::from(self.budget.samples));
         let (sender, receiver) = mpsc::channel::<()>();
         std::thread::scope(|scope| {
             for i in 0..self.threads {
                 let sender = sender.clone();
-                let (queue, tiles, work) = (&queue, &tiles, &work);
+                let (start, queue, tiles, work) = (self.start, &queue, &tiles, &work);
                 let worker = std::thread::Builder::new().name(format!("render {i}"));
                 let spawned = worker.spawn_scoped(scope, move || {
-                    work(Units { queue, tiles, finished: false });
+                    work(Units { start, queue, tiles, finished: false });
                     drop(sender);
                 });
                 if let Err(e) = spawned {
@@ -92,7 +95,7 @@ impl Workers<'_> {
             Ok(())
         })?;
         progress(&self.progress(&queue, start));
-        Ok(queue.progress().passes as u64 - self.first)
+        Ok(queue.progress().added as u64)
     }
 
     /// How long to wait before looking at the time again.

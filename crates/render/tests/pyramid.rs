@@ -1,6 +1,6 @@
 //! The pyramid's strategies add up to the picture.
 
-use caustica_film::Film;
+use caustica_film::{Film, Picture};
 use caustica_render::pyramid::Pyramid;
 use caustica_render::{Control, RenderOptions, Session};
 use caustica_scene::{Description, Scene};
@@ -10,7 +10,7 @@ use caustica_transport::Settings;
 
 fn options(samples: u32) -> RenderOptions {
     let settings = Settings { max_depth: Some(9), seed: 5, ..Settings::default() };
-    RenderOptions { settings, samples, time: None, threads: Some(2) }
+    RenderOptions { settings, samples, threads: Some(2), ..RenderOptions::default() }
 }
 
 fn scene(description: Description) -> Scene {
@@ -104,11 +104,10 @@ fn the_whole_is_the_picture() {
     pyramid.run(&Control::default(), |_| ()).unwrap();
     let session = Session::new(&scene, options(64)).unwrap();
     session.run(&Control::default(), |_| ()).unwrap();
-    let mean = |film: &Film| {
-        let picture = film.develop();
+    let mean = |picture: Picture| {
         picture.eye.iter().chain(&picture.light).flat_map(|p| p.0).map(f64::from).sum::<f64>()
     };
-    let (ours, theirs) = (mean(pyramid.whole()), mean(session.film()));
+    let (ours, theirs) = (mean(pyramid.whole().develop()), mean(session.film().develop()));
     assert!((ours / theirs - 1.0).abs() < 1e-3, "{ours} {theirs}");
     // Light paths are the same, and all of them are kept.
     assert_eq!(pyramid.whole().develop().light, session.film().develop().light);

@@ -40,7 +40,7 @@ const CROP: Option<Crop> = Some(Crop { x: 5, y: 3, width: 21, height: 18 });
 fn options(integrator: &str, samples: u32, threads: usize) -> RenderOptions {
     let integrator = integrator_by_name(integrator, 1.0, [0.0; 3], [0.0, 0.0, 1.0]).unwrap();
     let settings = Settings { integrator, seed: 9, ..Settings::default() };
-    RenderOptions { settings, samples, threads: Some(threads), time: None }
+    RenderOptions { settings, samples, threads: Some(threads), ..RenderOptions::default() }
 }
 
 fn session<'a>(scene: &'a Scene, options: RenderOptions) -> Session<'a> {
@@ -176,5 +176,5 @@ fn films_that_cannot_be_had_are_errors() {
     (d.film.width, d.film.height) = (65_536, 65_536);
     let (scene, _) = Scene::new(d).unwrap();
     let error = Session::new(&scene, RenderOptions::default()).unwrap_err().to_string();
-    assert!(error.contains("206159 MB"), "{error}");
+    assert!(error.contains("412317 MB"), "{error}");
 }

@@ -40,7 +40,7 @@ fn the_same_figures_in_json() {
     let expected =
         std::f64::consts::PI.powi(2) * 4.0 * 0.04 * (20.0 * 0.2126 + 18.0 * 0.7152 + 15.0 * 0.0722);
     assert!((power / expected - 1.0).abs() < 1e-3, "{power} {expected}");
-    assert_eq!(info["memory"]["film"], 24 * 8 * 48);
+    assert_eq!(info["memory"]["film"], 24 * 8 * 96);
     assert_eq!(info["warnings"].as_array().unwrap().len(), 1);
     assert!(info["warnings"][0]["message"].as_str().unwrap().contains("Fov"));
 }

@@ -5,6 +5,7 @@ mod bad_input;
 mod bench;
 mod compare;
 mod develop;
+mod films;
 mod images;
 mod info;
 mod interrupt;

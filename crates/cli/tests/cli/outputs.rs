@@ -73,7 +73,7 @@ fn extensions_are_understood() {
 fn a_film_too_large_for_the_machine() {
     let bench = Bench::new();
     let ran = bench.run(&["render", "scene.xml", "--resolution", "65536x65536"]);
-    ran.fails(5, &["a film of 65536 × 65536 pixels needs 206159 MB of memory, more than there is"]);
+    ran.fails(5, &["a film of 65536 × 65536 pixels needs 412317 MB of memory, more than there is"]);
     // A small part of it is nothing special.
     let small = ["render", "scene.xml", "--resolution", "65536x65536", "--crop", "30000,30000,8,8"];
     bench.run(&small).ok();

@@ -45,7 +45,7 @@ fn files_lie_beside_the_scene_and_say_what_they_hold() {
     bench.run(&["render", "scene.xml", "--seed", "7"]).ok();
     assert_eq!(bench.made(), ["scene.exr", "scene.png"]);
     let mut expected = Vec::new();
-    for layer in ["combined", "eye", "light"] {
+    for layer in ["combined", "error", "eye", "light"] {
         expected.extend(["B", "G", "R"].map(|c| format!("{layer}.{c}")));
     }
     assert_eq!(channels(&bench.path("scene.exr")), expected);

@@ -1,7 +1,8 @@
 //! Pictures as OpenEXR files: lossless, with both layers and what made them.
 //!
 //! A file has one part. Its data window is the crop, its display window the full picture, and its
-//! channels are `combined.R/G/B`, `eye.R/G/B` and `light.R/G/B`. Every fact about the render is a text
+//! channels are `combined.R/G/B`, `eye.R/G/B` and `light.R/G/B`, with `error.R/G/B` where error bars are known: half
+//! the width of the 95 % interval around eye and light image together. Every fact about the render is a text
 //! attribute whose name begins with `caustica.`.
 
 mod read;
@@ -17,6 +18,9 @@ const PREFIX: &str = "caustica.";
 
 /// The layers that a picture is read from; the combined one follows from them.
 const LAYERS: [&str; 2] = ["eye", "light"];
+
+/// The layer of error bars.
+const ERROR: &str = "error";
 
 /// Facts that [`write_exr`] states itself, whatever the metadata says.
 const SAMPLES: &str = "samples";
@@ -50,6 +54,12 @@ impl Metadata {
     /// All facts in the order of their names.
     pub fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
         self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()))
+    }
+}
+
+impl FromIterator<(String, String)> for Metadata {
+    fn from_iter<I: IntoIterator<Item = (String, String)>>(facts: I) -> Self {
+        Self(facts.into_iter().collect())
     }
 }
 

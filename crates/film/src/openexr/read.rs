@@ -12,7 +12,7 @@ use exr::prelude::{
     read,
 };
 
-use super::{LAYERS, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
+use super::{ERROR, LAYERS, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
 use crate::FilmError;
 use crate::layout::{Window, check_window};
 use crate::picture::Picture;
@@ -45,9 +45,10 @@ fn read_whole(path: &Path) -> Result<(Picture, Metadata), FilmError> {
     let eye_samples = count(&metadata, SAMPLES).map_err(bad)?;
     let light_samples = count(&metadata, LIGHT_PASSES).map_err(bad)?;
     file.rewind().map_err(io)?;
-    let [eye, light] = pixels(file).map_err(|e| explain(path, e))?;
-    let [width, height] = size;
-    Ok((Picture { width, height, window, eye_samples, light_samples, eye, light }, metadata))
+    let has_error = has_layer(&header.channels, ERROR);
+    let [eye, light, error] = pixels(file).map_err(|e| explain(path, e))?;
+    let ([width, height], error) = (size, has_error.then_some(error));
+    Ok((Picture { width, height, window, eye_samples, light_samples, eye, light, error }, metadata))
 }
 
 fn explain(path: &Path, error: exr::error::Error) -> FilmError {
@@ -74,6 +75,14 @@ fn check_channels(channels: &ChannelList) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// Whether a layer is there, at full resolution.
+fn has_layer(channels: &ChannelList, layer: &str) -> bool {
+    ["R", "G", "B"].iter().all(|channel| {
+        let name = format!("{layer}.{channel}");
+        channels.list.iter().any(|c| c.name.eq(&name) && c.sampling == Vec2(1, 1))
+    })
 }
 
 /// The sides of the full picture, and the part of it that is there.
@@ -125,8 +134,9 @@ fn count(metadata: &Metadata, name: &str) -> Result<u64, String> {
     }
 }
 
-/// The eye and the light image.
-fn pixels(file: File) -> exr::error::Result<[Vec<Rgb>; 2]> {
+/// The eye image, the light image and the error bars; black where there are none.
+fn pixels(file: File) -> exr::error::Result<[Vec<Rgb>; 3]> {
+    type Nine = (f32, f32, f32, f32, f32, f32, f32, f32, f32);
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -137,11 +147,16 @@ fn pixels(file: File) -> exr::error::Result<[Vec<Rgb>; 2]> {
         .required("light.R")
         .required("light.G")
         .required("light.B")
+        .optional("error.R", 0.0)
+        .optional("error.G", 0.0)
+        .optional("error.B", 0.0)
         .collect_pixels(
-            |size, _| (size.0, [vec![Rgb::BLACK; size.area()], vec![Rgb::BLACK; size.area()]]),
-            |(width, [eye, light]), Vec2(x, y), (r, g, b, lr, lg, lb): (f32, f32, f32, f32, f32, f32)| {
-                eye[y * *width + x] = Rgb::new(r, g, b);
-                light[y * *width + x] = Rgb::new(lr, lg, lb);
+            |size, _| (size.0, std::array::from_fn(|_| vec![Rgb::BLACK; size.area()])),
+            |(width, layers): &mut (usize, [Vec<Rgb>; 3]), Vec2(x, y), v: Nine| {
+                let pixel = [Rgb::new(v.0, v.1, v.2), Rgb::new(v.3, v.4, v.5), Rgb::new(v.6, v.7, v.8)];
+                for (layer, value) in layers.iter_mut().zip(pixel) {
+                    layer[y * *width + x] = value;
+                }
             },
         )
         .first_valid_layer()

@@ -23,6 +23,7 @@ fn picture() -> Picture {
         light_samples: 9,
         eye: layer(0),
         light: layer(9999),
+        error: None,
     }
 }
 
@@ -74,6 +75,20 @@ fn everything_round_trips_to_the_bit() {
         let expected: Vec<u32> = picture.combined(light_image).iter().map(|p| p.0[0].to_bits()).collect();
         assert_eq!(red, expected);
     }
+}
+
+#[test]
+fn error_bars_are_a_layer() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.exr");
+    let bars: Vec<Rgb> = picture().eye.iter().map(|p| *p * 0.25).collect();
+    let with = Picture { error: Some(bars.clone()), ..picture() };
+    write_exr(&path, &with, LightImage::On, &facts_of_a_render()).unwrap();
+    let (read, _) = read_exr(&path).unwrap();
+    assert_eq!(bits(&read.error.unwrap()), bits(&bars));
+    assert_eq!(bits(&read.light), bits(&with.light));
+    let short = Picture { error: Some(Vec::new()), ..picture() };
+    assert!(matches!(write_exr(&path, &short, LightImage::On, &Metadata::new()), Err(FilmError::Layout(_))));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use exr::prelude::{
     ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
 };
 
-use super::{LIGHT_IMAGE, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
+use super::{ERROR, LIGHT_IMAGE, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
 use crate::layout::{Window, check_layer, check_window};
 use crate::picture::{LightImage, Picture};
 use crate::{FilmError, output};
@@ -36,7 +36,9 @@ pub fn write_exr(
     facts.set(LIGHT_PASSES, picture.light_samples);
     facts.set(LIGHT_IMAGE, light_image);
     let combined = picture.combined(light_image);
-    let layers = [("combined", combined.as_slice()), ("eye", &picture.eye), ("light", &picture.light)];
+    let mut layers =
+        vec![("combined", combined.as_slice()), ("eye", &picture.eye), ("light", &picture.light)];
+    layers.extend(picture.error.as_ref().map(|error| (ERROR, error.as_slice())));
     write(path, [picture.width, picture.height], picture.window, (&layers, &facts))
 }
 

@@ -1,0 +1,234 @@
+//! Films in two halves, whose difference tells the error.
+
+use std::ops::Range;
+
+use caustica_math::Rgb;
+
+use crate::FilmError;
+use crate::error_bars::ErrorBars;
+use crate::film::{Film, FilmCounts, combine, develop};
+use crate::layout::FilmLayout;
+use crate::picture::Picture;
+
+/// A film in two half-buffers. Each pass of one sample a pixel goes to one of them, by its number alone, so that the
+/// halves, like their sum, depend on which passes were added and on nothing else.
+///
+/// The sum is what a single [`Film`] would hold. The difference of the halves holds nothing but noise, that of the
+/// light image included, and so tells how far the picture may be from the truth: see [`ErrorBars`].
+#[derive(Debug)]
+pub struct DualFilm {
+    halves: [Film; 2],
+}
+
+/// The half that a pass belongs to: of the passes from 2^k up to 2^(k+1), the first half goes to the first and the
+/// second to the second. Long runs of consecutive passes stay together, because they are well spread among each
+/// other: parts of every other pass would be noisier than half of the film.
+#[inline]
+pub fn half_of(pass: u64) -> usize {
+    match pass {
+        0 | 1 => pass as usize,
+        _ => (pass >> (pass.ilog2() - 1) & 1) as usize,
+    }
+}
+
+/// How many of the passes before `end` belong to the second half.
+fn second_before(end: u64) -> u64 {
+    match end {
+        0 | 1 => 0,
+        _ => {
+            let quarter = 1 << end.ilog2() >> 1;
+            quarter + end.saturating_sub(3 * quarter)
+        }
+    }
+}
+
+/// How many of those passes belong to each half.
+pub(crate) fn passes_by_half(passes: Range<u64>) -> [u64; 2] {
+    let second = second_before(passes.end) - second_before(passes.start);
+    [passes.end - passes.start - second, second]
+}
+
+impl DualFilm {
+    /// An empty film. It takes 96 bytes a pixel.
+    ///
+    /// # Errors
+    /// Sizes that make no sense or need more memory than there is.
+    pub fn new(layout: FilmLayout) -> Result<Self, FilmError> {
+        let window = layout.window;
+        layout.check()?;
+        Film::check_memory(window, 2)?;
+        Ok(Self { halves: [Film::new(layout)?, Film::new(layout)?] })
+    }
+
+    /// A film of two halves, which must have one layout.
+    ///
+    /// # Errors
+    /// If they do not.
+    pub fn of_halves(halves: [Film; 2]) -> Result<Self, FilmError> {
+        halves[0].check_same_layout(&halves[1])?;
+        Ok(Self { halves })
+    }
+
+    /// The film's sizes.
+    pub fn layout(&self) -> &FilmLayout {
+        self.halves[0].layout()
+    }
+
+    /// The half to which a pass is added.
+    #[inline]
+    pub fn half(&self, pass: u64) -> &Film {
+        &self.halves[half_of(pass)]
+    }
+
+    /// Both halves.
+    pub fn halves(&self) -> &[Film; 2] {
+        &self.halves
+    }
+
+    /// Records that these passes were added, to the eye image, the light image or both.
+    pub fn finish_passes(&self, passes: Range<u64>, eye: bool, light: bool) {
+        for (film, count) in self.halves.iter().zip(passes_by_half(passes)) {
+            film.finish_samples(if eye { count } else { 0 }, if light { count } else { 0 });
+        }
+    }
+
+    /// How much went into both halves.
+    pub fn counts(&self) -> FilmCounts {
+        let [a, b] = self.halves.each_ref().map(Film::counts);
+        a.plus(b)
+    }
+
+    /// Samples per pixel of the eye image.
+    pub fn eye_samples(&self) -> u64 {
+        self.counts().eye_samples
+    }
+
+    /// Passes of light paths of the light image.
+    pub fn light_samples(&self) -> u64 {
+        self.counts().light_samples
+    }
+
+    /// The sums of both halves in quanta, pixel by pixel: three channels of the eye image, then three of the light
+    /// image.
+    pub fn sums(&self) -> impl ExactSizeIterator<Item = [i64; 6]> {
+        let [a, b] = &self.halves;
+        a.sums().zip(b.sums()).map(|(a, b)| std::array::from_fn(|c| a[c].saturating_add(b[c])))
+    }
+
+    /// Adds all that went into `other`, a film of the same layout.
+    ///
+    /// # Errors
+    /// If the layouts differ.
+    pub fn merge(&self, other: &DualFilm) -> Result<(), FilmError> {
+        self.halves[0].merge(&other.halves[0])?;
+        self.halves[1].merge(&other.halves[1])
+    }
+
+    /// Whether two films have the same layout, sums and counts in both halves.
+    pub fn bits_equal(&self, other: &DualFilm) -> bool {
+        self.halves.iter().zip(&other.halves).all(|(a, b)| a.bits_equal(b))
+    }
+
+    /// A hash of the layout, the sums and the counts of both halves.
+    pub fn fingerprint(&self) -> u64 {
+        let [a, b] = self.halves.each_ref().map(Film::fingerprint);
+        combine(a, b)
+    }
+
+    /// The picture so far: each layer divided by its own count, with error bars if there are passes in both halves.
+    /// A layer without samples is black.
+    pub fn develop(&self) -> Picture {
+        let picture = develop(self.layout(), self.counts(), || self.sums());
+        let error = self.error_bars().map(|bars| bars.half_widths());
+        Picture { error, ..picture }
+    }
+
+    /// How far the picture, eye and light image together, may be from the truth. `None` if one half is empty.
+    pub fn error_bars(&self) -> Option<ErrorBars> {
+        let pictures = self.halves.each_ref().map(Film::develop);
+        let passes = self.halves.each_ref().map(|f| f.eye_samples().max(f.light_samples()));
+        if passes.contains(&0) {
+            return None;
+        }
+        let [a, b] = pictures.map(|p| p.eye.iter().zip(&p.light).map(|(e, l)| *e + *l).collect::<Vec<Rgb>>());
+        Some(ErrorBars::of_halves(self.layout().window, [a, b], passes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Window;
+
+    #[test]
+    fn halves_are_balanced_at_every_power_of_two_and_counted_right() {
+        let mut second = 0;
+        for pass in 0..5000u64 {
+            assert_eq!(second_before(pass), second, "{pass}");
+            if pass.is_power_of_two() && pass > 1 {
+                assert_eq!(2 * second, pass);
+            }
+            // Never less than a third of them.
+            if pass > 1 {
+                assert!(3 * second + 1 >= pass && 3 * (pass - second) + 1 >= pass, "{pass}: {second}");
+            }
+            second += half_of(pass) as u64;
+        }
+        assert_eq!(half_of(u64::MAX), 1);
+        assert_eq!(second_before(u64::MAX), u64::MAX / 2);
+    }
+
+    fn film() -> DualFilm {
+        let window = Window { x: 0, y: 0, width: 4, height: 3 };
+        DualFilm::new(FilmLayout { width: 4, height: 3, window, quantum_exponent: -20 }).unwrap()
+    }
+
+    fn add(film: &DualFilm, pass: u64) {
+        let value = Rgb::new(1.0, 0.5 + pass as f32, 0.25);
+        for i in 0..12 {
+            film.half(pass).add_eye([i % 4, i / 4], value * (i + 1) as f32);
+        }
+        film.finish_passes(pass..pass + 1, true, false);
+    }
+
+    #[test]
+    fn the_sum_is_what_a_single_film_holds() {
+        let dual = film();
+        let single = Film::new(*dual.layout()).unwrap();
+        for pass in 0..7 {
+            add(&dual, pass);
+            for i in 0..12 {
+                single.add_eye([i % 4, i / 4], Rgb::new(1.0, 0.5 + pass as f32, 0.25) * (i + 1) as f32);
+            }
+            single.finish_samples(1, 0);
+        }
+        assert!(dual.sums().eq(single.sums()));
+        assert_eq!(dual.counts(), single.counts());
+        let picture = dual.develop();
+        assert!(picture.error.is_some());
+        assert_eq!(Picture { error: None, ..picture }, single.develop());
+    }
+
+    #[test]
+    fn merging_keeps_the_halves_apart() {
+        let (whole, a, b) = (film(), film(), film());
+        for pass in 0..9 {
+            add(&whole, pass);
+            add(if pass % 3 == 0 { &a } else { &b }, pass);
+        }
+        assert!(!a.bits_equal(&whole) && a.fingerprint() != whole.fingerprint());
+        b.merge(&a).unwrap();
+        assert!(b.bits_equal(&whole));
+        assert_eq!(b.fingerprint(), whole.fingerprint());
+    }
+
+    #[test]
+    fn a_half_without_passes_has_no_error_bars() {
+        let one = film();
+        assert_eq!(one.develop().error, None);
+        add(&one, 0);
+        assert!(one.error_bars().is_none());
+        add(&one, 1);
+        assert!(one.error_bars().is_some());
+    }
+}
