@@ -16,12 +16,9 @@ pub fn mutate(target: &Target, data: &mut [u8], size: usize, (most, seed): (usiz
     length
 }
 
-/// Lets panics that a reader catches pass: decoders of other people may panic, and are caught. What nobody
-/// catches still ends the process.
-pub fn quiet_panics() {
-    let told = std::panic::take_hook();
-    // The hook that libFuzzer sets ends the process, so only its words are wanted.
-    drop(told);
+/// Lets panics pass that a reader catches: decoders of other people may panic. libFuzzer's own hook would end the
+/// process; what nobody catches still does.
+pub fn forgive_caught_panics() {
     std::panic::set_hook(Box::new(|info| eprintln!("{info}")));
 }
 
@@ -37,7 +34,7 @@ macro_rules! target {
             LazyLock::new(|| caustica_fuzzing::target($name));
 
         fuzz_target!(
-            init: $crate::quiet_panics(),
+            init: $crate::forgive_caught_panics(),
             |data: &[u8]| (TARGET.run)(data)
         );
 

@@ -7,8 +7,7 @@ use caustica_scene::{Description, Diagnostic, Scene};
 
 use crate::{folder, images};
 
-/// The larger of the two is what a scene's own description may ask for: pixels are not rendered here, and
-/// meshes are as small as the text.
+/// Scenes of more shapes are read and not made ready, which would take the time of many inputs.
 const MOST_SHAPES: usize = 20_000;
 
 /// A scene file: it is read, and what it describes is made ready to be rendered. Errors must have a place.

@@ -35,6 +35,16 @@ impl Heuristic {
             Self::Power => density * density,
         }
     }
+
+    /// The weight of a strategy with the density `own`, which is not zero, where there is one other.
+    #[inline]
+    pub fn share(self, own: f32, other: f32) -> f32 {
+        match self {
+            Self::Balance => own / (own + other),
+            // By their ratio: the squares of densities on tiny lamps do not fit into an `f32`.
+            Self::Power => 1.0 / (1.0 + self.of(other / own)),
+        }
+    }
 }
 
 /// What a subpath that ends at vertex i contributes to the sum of all strategies' densities, relative to the
@@ -167,6 +177,23 @@ mod tests {
         for h in [Heuristic::Balance, Heuristic::Power] {
             assert_eq!(exhaustive(&path, ends, 0, h, |i| i <= 1), 1.0);
             assert_eq!(exhaustive(&path, ends, 0, h, |_| true), 1.0);
+        }
+    }
+
+    /// Found by fuzzing random scenes: squares of densities overflowed, and the weight was no number.
+    #[test]
+    fn two_strategies_share_at_any_density() {
+        for h in [Heuristic::Balance, Heuristic::Power] {
+            for scale in [1e-30_f32, 1.0, 1e25] {
+                let [a, b] = [h.share(2.0 * scale, scale), h.share(scale, 2.0 * scale)];
+                let expected = h.of(2.0) / (1.0 + h.of(2.0));
+                assert!(
+                    (a - expected).abs() < 1e-6 && (a + b - 1.0).abs() < 1e-6,
+                    "{h:?}, {scale}: {a}, {b}"
+                );
+            }
+            assert!(h.share(1e-20, 1e20) < 1e-30);
+            assert_eq!([h.share(1e20, 1e-20), h.share(1e-20, 0.0)], [1.0, 1.0]);
         }
     }
 
