@@ -78,6 +78,9 @@ impl Arguments {
 pub struct Source {
     /// Nori scene file; without it, the built-in scene of caustics is rendered
     pub scene: Option<PathBuf>,
+    /// Read only files below the scene's own folder: for scenes from people you do not know
+    #[arg(long)]
+    pub untrusted: bool,
     /// Size of the picture, such as 640x480 [default: as the scene says]
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<(u32, u32)>,
@@ -472,6 +475,9 @@ pub struct Develop {
 pub struct Info {
     /// Nori scene file or film; without it, the built-in scene
     pub scene: Option<PathBuf>,
+    /// Read only files below the scene's own folder: for scenes from people you do not know
+    #[arg(long)]
+    pub untrusted: bool,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -481,6 +487,9 @@ pub struct Info {
 pub struct Test {
     /// Nori scene file with tests
     pub scene: PathBuf,
+    /// Read only files below the scene's own folder: for scenes from people you do not know
+    #[arg(long)]
+    pub untrusted: bool,
     /// Seed of the sample streams
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,

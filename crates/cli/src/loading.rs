@@ -1,18 +1,24 @@
 use std::path::{Path, PathBuf};
 
 use caustica::description::{Camera, Integrator};
+use caustica::import::{self, Trust};
 use caustica::scene::Diagnostic;
 use caustica::scene::bvh::TreeQuality;
-use caustica::{Description, Scene, default_scene, import};
+use caustica::{Description, Scene, default_scene};
 
 use crate::args::Source;
 use crate::console::Console;
 use crate::failure::Failure;
 
+/// What `--untrusted` says.
+pub fn trust(untrusted: bool) -> Trust {
+    if untrusted { Trust::OwnFolder } else { Trust::Full }
+}
+
 /// The scene of that file, or the built-in one.
-pub fn description(path: Option<&Path>, console: &mut Console) -> Result<Description, Failure> {
+pub fn description(path: Option<&Path>, trust: Trust, console: &mut Console) -> Result<Description, Failure> {
     let Some(path) = path else { return Ok(default_scene::description()) };
-    let loaded = import::load(path)?;
+    let loaded = import::load_with(path, trust)?;
     console.warn(loaded.warnings);
     loaded.scene.ok_or_else(|| {
         Diagnostic::error(format!("`{}` carries tests but no scene", path.display()))
@@ -50,7 +56,7 @@ pub fn open_with<T>(
     console: &mut Console,
     look: impl FnOnce(&mut Description) -> T,
 ) -> Result<(Opened, T), Failure> {
-    let mut description = description(source.scene.as_deref(), console)?;
+    let mut description = description(source.scene.as_deref(), trust(source.untrusted), console)?;
     override_film(&mut description, source, console)?;
     let seen = look(&mut description);
     let (integrator, samples) = (description.integrator, description.samples.max(1));

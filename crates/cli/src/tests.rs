@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::args::Test;
 use crate::console::{Console, print};
 use crate::failure::Failure;
+use crate::loading;
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -18,7 +19,7 @@ struct Results {
 }
 
 pub fn run(args: &Test, console: &mut Console) -> Result<ExitCode, Failure> {
-    let loaded = import::load(&args.scene)?;
+    let loaded = import::load_with(&args.scene, loading::trust(args.untrusted))?;
     console.warn(loaded.warnings);
     if loaded.tests.is_empty() {
         return Err(Diagnostic::error(format!("`{}` carries no tests", args.scene.display()))

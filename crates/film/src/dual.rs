@@ -110,7 +110,7 @@ impl DualFilm {
     /// image.
     pub fn sums(&self) -> impl ExactSizeIterator<Item = [i64; 6]> {
         let [a, b] = &self.halves;
-        a.sums().zip(b.sums()).map(|(a, b)| std::array::from_fn(|c| a[c].wrapping_add(b[c])))
+        a.sums().zip(b.sums()).map(|(a, b)| std::array::from_fn(|c| a[c].saturating_add(b[c])))
     }
 
     /// Adds all that went into `other`, a film of the same layout.

@@ -173,7 +173,7 @@ impl Film {
     pub fn splat_into(&self, buffer: &mut LightBuffer, filter: &PixelFilter, position: Vec2, value: Rgb) {
         self.splat(filter, position, value, |index, counts| {
             for (sum, count) in buffer.sums[index].iter_mut().zip(counts) {
-                *sum = sum.wrapping_add(count);
+                *sum = sum.saturating_add(count);
             }
         });
     }
@@ -230,7 +230,7 @@ impl Film {
     fn add_counts_to(&self, index: usize, layer: usize, counts: [i64; 3]) {
         for (sum, count) in self.pixels[index][layer..layer + 3].iter().zip(counts) {
             if count != 0 {
-                sum.fetch_add(count, Relaxed);
+                add(sum, count);
             }
         }
     }
@@ -282,7 +282,7 @@ impl Film {
     pub fn merge(&self, other: &Film) -> Result<(), FilmError> {
         self.check_same_layout(other)?;
         for (ours, theirs) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()) {
-            ours.fetch_add(theirs.load(Relaxed), Relaxed);
+            add(ours, theirs.load(Relaxed));
         }
         self.add_counts(other.counts());
         Ok(())
@@ -355,6 +355,16 @@ pub(crate) fn combine(hash: u64, word: u64) -> u64 {
 fn too_large(window: Window, films: u64) -> FilmError {
     let bytes = window.pixels().saturating_mul(films * size_of::<Sums>() as u64);
     FilmError::too_large(window.width, window.height, bytes)
+}
+
+/// Adds, but for sums beyond 64 bits, which stay at the end of what there is. Whoever sees a sum wrap around puts it
+/// there, so that without negative counts this too depends on no order.
+#[inline]
+fn add(sum: &AtomicI64, count: i64) {
+    let before = sum.fetch_add(count, Relaxed);
+    if before.checked_add(count).is_none() {
+        sum.store(if count < 0 { i64::MIN } else { i64::MAX }, Relaxed);
+    }
 }
 
 /// Whether the machine has the memory for a film of that many pixels, and for developing it. Asking for it

@@ -2,9 +2,19 @@
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 use caustica_scene::MemoryLimit;
+
+/// Which files a scene may name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trust {
+    /// Any: `../meshes/x.obj` and absolute paths are common in scenes that people write for themselves.
+    #[default]
+    Full,
+    /// Only files below the scene's own folder, named by relative paths, after symbolic links are followed.
+    OwnFolder,
+}
 
 /// Where the files lie that a scene names.
 #[derive(Clone, Copy)]
@@ -15,6 +25,8 @@ pub(crate) struct Folder<'a> {
     pub(crate) embedded: &'a [(&'a str, &'a str)],
     /// What all that is read may take.
     pub(crate) memory: MemoryLimit,
+    /// Which files may be opened.
+    pub(crate) trust: Trust,
 }
 
 impl<'a> Folder<'a> {
@@ -22,6 +34,39 @@ impl<'a> Folder<'a> {
     pub(crate) fn embedded(&self, name: &str) -> Option<&'a str> {
         self.embedded.iter().find(|(n, _)| *n == name).map(|(_, text)| *text)
     }
+
+    /// The path of a file that the scene names; the error says why it may not be opened, in words.
+    pub(crate) fn resolve(&self, name: &str) -> Result<PathBuf, String> {
+        let path = self.base.join(name);
+        if self.trust == Trust::Full {
+            return Ok(path);
+        }
+        // By its name alone, so that the answer does not tell what exists elsewhere.
+        if climbs_out(Path::new(name)) {
+            return Err(OUTSIDE.into());
+        }
+        let base = if self.base.as_os_str().is_empty() { Path::new(".") } else { self.base };
+        let root = base.canonicalize().map_err(|e| reason(&e))?;
+        let found = path.canonicalize().map_err(|e| reason(&e))?;
+        if found.starts_with(&root) { Ok(found) } else { Err(OUTSIDE.into()) }
+    }
+}
+
+/// Why a file is refused to a scene that is not trusted.
+const OUTSIDE: &str = "it lies outside of the scene's folder, and the scene is not trusted";
+
+/// Whether a path is absolute or leaves the folder that it starts in.
+fn climbs_out(path: &Path) -> bool {
+    let mut depth = 0_usize;
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::Normal(_) => depth += 1,
+            Component::ParentDir if depth > 0 => depth -= 1,
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return true,
+        }
+    }
+    false
 }
 
 /// Opens a regular file and tells its size; the error says why that failed, in words.

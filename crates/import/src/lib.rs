@@ -16,7 +16,8 @@ use caustica_scene::{Description, Diagnostic, MemoryLimit};
 
 use files::Folder;
 
-pub use image::{ReadImage, read_image, read_image_within};
+pub use files::Trust;
+pub use image::{ReadImage, decode_image, read_image, read_image_within};
 pub use nori::{SceneTest, TestKind};
 pub use obj::{ObjMesh, load_obj, load_obj_within, read_obj};
 
@@ -34,14 +35,23 @@ pub struct Loaded {
 /// The most bytes that a scene file may have.
 const LARGEST_SCENE_FILE: u64 = 64 << 20;
 
-/// Reads a scene file and all files that it names.
+/// Reads a scene file and all files that it names, wherever they are.
 pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
-    load_within(path, MemoryLimit::Machine)
+    load_file(path, Trust::Full, MemoryLimit::Machine)
 }
 
 /// The same in so much memory: images and meshes that take more are refused, images before they are decoded and
 /// meshes while they are read.
 pub fn load_within(path: &Path, memory: MemoryLimit) -> Result<Loaded, Diagnostic> {
+    load_file(path, Trust::Full, memory)
+}
+
+/// Reads a scene file and the files that it names, where `trust` allows it to name them.
+pub fn load_with(path: &Path, trust: Trust) -> Result<Loaded, Diagnostic> {
+    load_file(path, trust, MemoryLimit::Machine)
+}
+
+fn load_file(path: &Path, trust: Trust, memory: MemoryLimit) -> Result<Loaded, Diagnostic> {
     let name = path.display().to_string();
     let bytes = files::read(path, LARGEST_SCENE_FILE)
         .map_err(|why| Diagnostic::error(format!("cannot read the scene `{name}`: {why}")))?;
@@ -57,18 +67,29 @@ pub fn load_within(path: &Path, memory: MemoryLimit) -> Result<Loaded, Diagnosti
                 .hint("save the file with the encoding UTF-8"));
         }
     };
-    parse(text, &name, Folder { base: path.parent().unwrap_or(Path::new("")), embedded: &[], memory })
+    parse(text, &name, Folder { base: path.parent().unwrap_or(Path::new("")), embedded: &[], trust, memory })
 }
 
 /// Reads a scene from the text of a Nori scene file. `file_name` is for messages; relative paths start
 /// at `base_dir`.
 pub fn parse_nori(text: &str, file_name: &str, base_dir: &Path) -> Result<Loaded, Diagnostic> {
-    parse(text, file_name, Folder { base: base_dir, embedded: &[], memory: MemoryLimit::Machine })
+    parse_nori_with(text, file_name, base_dir, Trust::Full)
+}
+
+/// The same with a choice of the files that the scene may name.
+pub fn parse_nori_with(
+    text: &str,
+    file_name: &str,
+    base_dir: &Path,
+    trust: Trust,
+) -> Result<Loaded, Diagnostic> {
+    parse(text, file_name, Folder { base: base_dir, embedded: &[], trust, memory: MemoryLimit::Machine })
 }
 
 /// Reads a scene that comes with the program: its text, and its meshes as (name, OBJ text).
 pub fn parse_embedded(text: &str, file_name: &str, meshes: &[(&str, &str)]) -> Result<Loaded, Diagnostic> {
-    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes, memory: MemoryLimit::Machine })
+    let (trust, memory) = (Trust::Full, MemoryLimit::Machine);
+    parse(text, file_name, Folder { base: Path::new(""), embedded: meshes, trust, memory })
 }
 
 fn parse(text: &str, file_name: &str, folder: Folder<'_>) -> Result<Loaded, Diagnostic> {

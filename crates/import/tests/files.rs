@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use caustica_import::load;
+use caustica_import::{Trust, load, load_with};
 use caustica_scene::description::Geometry;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -63,4 +63,82 @@ fn scene_files_that_are_none() {
     fs::write(&path, vec![b' '; (64 << 20) + 1]).unwrap();
     let error = load(&path).unwrap_err();
     assert!(error.message.contains("larger than 64 MiB"), "{error}");
+}
+
+/// A folder with `outside.obj` and `secret/in.obj`, and beside them `scene/` with `in.obj` and `sub/in.obj`.
+fn two_folders() -> tempfile::TempDir {
+    let root = tempfile::tempdir().unwrap();
+    for folder in ["scene/sub", "secret"] {
+        fs::create_dir_all(root.path().join(folder)).unwrap();
+    }
+    for file in ["outside.obj", "secret/in.obj", "scene/in.obj", "scene/sub/in.obj"] {
+        fs::write(root.path().join(file), TRIANGLE).unwrap();
+    }
+    root
+}
+
+/// What comes of a scene in `scene/` that names `file`, on line 2.
+fn naming(root: &tempfile::TempDir, file: &str, trust: Trust) -> Result<(), caustica_scene::Diagnostic> {
+    let path = root.path().join("scene/s.xml");
+    fs::write(&path, scene(&format!("<mesh type='obj'><string name='filename' value='{file}'/></mesh>")))
+        .unwrap();
+    load_with(&path, trust).map(|loaded| assert_eq!(loaded.scene.unwrap().shapes.len(), 1))
+}
+
+#[test]
+fn trusted_scenes_name_files_anywhere() {
+    let root = two_folders();
+    let absolute = root.path().join("outside.obj").display().to_string();
+    for file in ["in.obj", "sub/in.obj", "../outside.obj", "../secret/in.obj", &absolute] {
+        naming(&root, file, Trust::Full).unwrap();
+    }
+}
+
+#[test]
+fn untrusted_scenes_name_files_of_their_own_folder() {
+    let root = two_folders();
+    for file in ["in.obj", "./in.obj", "sub/in.obj", "sub/../in.obj", "sub/./../sub/in.obj"] {
+        naming(&root, file, Trust::OwnFolder).unwrap();
+    }
+    let absolute = root.path().join("scene/in.obj").display().to_string();
+    // What does not exist is refused by the same words as what does.
+    let outside =
+        ["../outside.obj", "../nothing.obj", "sub/../../outside.obj", "/nothing.obj", &absolute, "..", "/"];
+    for file in outside {
+        let error = naming(&root, file, Trust::OwnFolder).unwrap_err();
+        assert!(error.message.contains("outside of the scene's folder"), "{file}: {error}");
+        assert!(error.message.contains(&format!("the mesh `{file}`")) || file.len() > 30, "{file}: {error}");
+        let origin = error.origin.unwrap();
+        assert_eq!((origin.line, origin.column), (2, 49), "{file}");
+        assert!(origin.file.ends_with("s.xml"));
+    }
+    let error = naming(&root, "nothing.obj", Trust::OwnFolder).unwrap_err();
+    assert!(error.message.contains("there is no such file"), "{error}");
+    assert!(error.origin.is_some());
+}
+
+#[test]
+fn untrusted_scenes_name_no_images_elsewhere() {
+    let root = two_folders();
+    let path = root.path().join("scene/s.xml");
+    let sky = "<emitter type='envmap'><string name='filename' value='../sky.png'/></emitter>";
+    fs::write(&path, scene(sky)).unwrap();
+    let error = load_with(&path, Trust::OwnFolder).unwrap_err();
+    assert!(error.message.contains("the image `../sky.png`") && error.message.contains("outside"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn untrusted_scenes_follow_no_links_out_of_their_folder() {
+    use std::os::unix::fs::symlink;
+    let root = two_folders();
+    symlink(root.path().join("outside.obj"), root.path().join("scene/link.obj")).unwrap();
+    symlink(root.path().join("secret"), root.path().join("scene/folder")).unwrap();
+    symlink("sub/in.obj", root.path().join("scene/inner.obj")).unwrap();
+    for file in ["link.obj", "folder/in.obj", "folder/../outside.obj"] {
+        naming(&root, file, Trust::Full).unwrap();
+        let error = naming(&root, file, Trust::OwnFolder).unwrap_err();
+        assert!(error.message.contains("outside of the scene's folder"), "{file}: {error}");
+    }
+    naming(&root, "inner.obj", Trust::OwnFolder).unwrap();
 }

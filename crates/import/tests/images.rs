@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica_import::{parse_nori, read_image};
+use caustica_import::{Trust, parse_nori, read_image};
 use caustica_math::Rgb;
 use caustica_scene::description::{Image, LightKind, MaterialKind, Texture};
 use exr::prelude::{
@@ -191,6 +191,67 @@ fn crc(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { 0xEDB8_8320 ^ (c >> 1) } else { c >> 1 })
     })
+}
+
+/// 2²⁶ pixels: by two images, or by one.
+#[test]
+fn untrusted_scenes_have_fewer_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut huge = png(png::ColorType::Grayscale, png::BitDepth::Eight, (1, 1), &[0]);
+    huge[16..24].copy_from_slice(&[0, 0, 0x20, 0, 0, 0, 0x20, 0]);
+    let sum = crc(&huge[12..29]);
+    huge[29..33].copy_from_slice(&sum.to_be_bytes());
+    write(&folder, "huge.png", &huge);
+    write(&folder, "dot.png", &png(png::ColorType::Grayscale, png::BitDepth::Eight, (1, 1), &[0]));
+    let read = |names: &[&str], trust| {
+        let lamp = |n| format!("<emitter type='envmap'><string name='filename' value='{n}'/></emitter>");
+        let lamps: String = names.iter().map(lamp).collect();
+        let text = format!("<scene><camera type='perspective'/><integrator type='path'/>{lamps}</scene>");
+        caustica_import::parse_nori_with(&text, "s.xml", folder.path(), trust).unwrap_err()
+    };
+    // The file is too short for its size in any case: the limit is asked first.
+    for (names, trust, words) in [
+        (&["huge.png"][..], Trust::OwnFolder, "cut off, or its size is wrong"),
+        (&["dot.png", "huge.png"], Trust::Full, "cut off, or its size is wrong"),
+        (&["dot.png", "huge.png"], Trust::OwnFolder, "8192 × 8192 pixels are more than the 67108863"),
+    ] {
+        let error = read(names, trust);
+        assert!(error.message.contains(words) && error.origin.is_some(), "{error}");
+    }
+}
+
+/// Found by fuzzing: a block of B44 made the decoder panic on a thread of its own, which ended the process.
+#[test]
+fn a_decoder_that_panics_is_an_error() {
+    let halves = || FlatSamples::F16(vec![exr::prelude::f16::ONE; 16]);
+    let list = ["R", "G", "B"].map(|name| AnyChannel::new(name, halves()));
+    let encoding = Encoding { compression: exr::prelude::Compression::B44, ..Encoding::UNCOMPRESSED };
+    let attributes = LayerAttributes::named("first");
+    let channels = AnyChannels::sort(list.into_iter().collect());
+    let layer = exr::prelude::Layer::new((4, 4), attributes, encoding, channels);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    exr::prelude::Image::from_layer(layer).write().to_buffered(&mut bytes).unwrap();
+    let mut bytes = bytes.into_inner();
+    // Differences below zero: the decoder's arithmetic wraps around, or panics where that is checked.
+    let last_block = bytes.len() - 14;
+    bytes[last_block..].fill(0);
+    if let Err(error) = read(&bytes) {
+        assert!(error.contains("its decoder failed"), "{error}");
+    }
+}
+
+/// Found by reading: a header of a few bytes asked for gigabytes.
+#[test]
+fn no_format_packs_pixels_closer_than_it_can() {
+    let mut jpeg = COLOURS.to_vec();
+    let frame = jpeg.windows(2).position(|w| w == [0xFF, 0xC0]).unwrap();
+    jpeg[frame + 5..frame + 9].copy_from_slice(&[0x3F, 0xFF, 0x3F, 0xFF]);
+    assert!(read(&jpeg).unwrap_err().contains("cut off, or its size is wrong"));
+    let mut exr = exr(&[("Y", floats([0.5, 1.0]))]);
+    let name = b"dataWindow\0box2i\0";
+    let window = exr.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+    exr[window + 8..window + 16].copy_from_slice(&[0xFF, 0x3F, 0, 0, 0xFF, 0x3F, 0, 0]);
+    assert!(read(&exr).unwrap_err().contains("cut off, or its size is wrong"));
 }
 
 #[test]

@@ -213,6 +213,22 @@ trait Buffered: std::io::Read + Sized {
 }
 impl<R: std::io::Read> Buffered for R {}
 
+/// Found by fuzzing: the place of the error was a line that the file does not have.
+#[test]
+fn a_continued_last_line_is_counted_once() {
+    for text in ["g\n \\\n ", "g\n \\\n\\\n", "g\n\\\r\n"] {
+        let line = read_obj(text.as_bytes(), "m.obj").unwrap_err().origin.unwrap().line as usize;
+        assert_eq!(line, text.lines().count(), "{text:?}");
+    }
+}
+
+/// Found with the one above: a line of blanks after a backslash went on into the next statement.
+#[test]
+fn a_line_of_blanks_ends_a_continued_line() {
+    let mesh = good("v 0 0 0 \\\n \nv 1 0 0\nv 0 1 0\nf 1 2 \\\n3\n");
+    assert_eq!((mesh.positions.len(), mesh.triangles.len()), (3, 1));
+}
+
 #[test]
 fn files_that_are_none() {
     let folder = tempfile::tempdir().unwrap();

@@ -76,6 +76,14 @@ fn unknown_plugins() {
     refused("<test type='§ztest'/>", "unknown test `ztest`");
 }
 
+/// Found by fuzzing random scenes: with lobes of 10³⁰ the weights of samples overflowed.
+#[test]
+fn lobes_of_filters_are_bounded() {
+    let filter = |value| camera("perspective", &format!("<rfilter type='mitchell'>{value}</rfilter>"));
+    refused(&filter("<float name='B' value='§1e30'/>"), "`B` must be between -100 and 100");
+    refused(&filter("<float name='C' value='§-100'/>"), "`C` must be between -100 and 100");
+}
+
 #[test]
 fn deliberately_unsupported() {
     refused(

@@ -105,9 +105,13 @@ enum Shape {
     Table(Table),
 }
 
+/// The largest integral of a filter's magnitude, where that of the filter is one. It is the size of every sample's
+/// weight along one axis: beyond, pictures are noise, and in the end not finite.
+const LARGEST_MAGNITUDE: f64 = 1e3;
+
 impl PixelFilter {
     /// Prepares `filter`. Parameters that make no filter (a radius that is not positive, an integral
-    /// that is not) give the pixel itself, a box of radius 0.5.
+    /// that is not, or is nothing beside its parts) give the pixel itself, a box of radius 0.5.
     pub fn new(filter: &Filter) -> Self {
         let radius = filter.radius();
         let usable = radius > 0.0 && radius.is_finite();
@@ -190,7 +194,7 @@ struct Table {
 }
 
 impl Table {
-    /// `None` if the integral is not positive.
+    /// `None` if the integral is not positive, or next to nothing beside what cancels in it.
     fn new(filter: &Filter) -> Option<Self> {
         let radius = f64::from(filter.radius());
         let cells = match *filter {
@@ -202,7 +206,8 @@ impl Table {
         let mut raw: Vec<f64> = (0..cells).map(|i| filter.profile(step * i as f64, radius)).collect();
         raw.push(0.0);
         let integral = raw.windows(2).map(|v| v[0] + v[1]).sum::<f64>() * step;
-        if !(integral.is_finite() && integral > 0.0) {
+        let whole = raw.windows(2).map(|v| (v[0] + v[1]).abs()).sum::<f64>() * step;
+        if !(whole.is_finite() && integral > 0.0 && whole <= integral * LARGEST_MAGNITUDE) {
             return None;
         }
         let values: Vec<f32> = raw.iter().map(|v| (v / integral) as f32).collect();

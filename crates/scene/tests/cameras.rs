@@ -8,6 +8,7 @@ use caustica_math::{SampleStream, StreamId, Transform, Vec2, Vec3};
 use caustica_scene::camera::{Camera, CameraRay};
 use caustica_scene::description::{self, CameraKind, FilmSettings};
 use caustica_testkit::chi_square::{ChiSquareConfig, chi_square_sphere};
+use caustica_testkit::seed::seed;
 
 const SIZE: [f32; 2] = [40.0, 24.0];
 
@@ -44,7 +45,7 @@ fn kinds() -> impl Iterator<Item = CameraKind> {
 }
 
 fn random(name: u32) -> SampleStream {
-    SampleStream::new(StreamId { seed: 5, pixel: name, sample: 0, walk: 0 })
+    SampleStream::new(StreamId { seed: seed(5), pixel: name, sample: 0, walk: 0 })
 }
 
 fn on_film([x, y]: [f32; 2]) -> Vec2 {

@@ -11,6 +11,8 @@ use caustica_math::chi_square::{Cell, Integrand, spherical};
 use caustica_math::stats::chi_square_test;
 use caustica_math::{SampleStream, StreamId, Vec3};
 
+use crate::seed::seed;
+
 /// How thorough a test is.
 #[derive(Clone, Copy, Debug)]
 pub struct ChiSquareConfig {
@@ -59,7 +61,7 @@ pub fn chi_square_sphere(
     config: ChiSquareConfig,
 ) -> Result<f64, String> {
     let mut draw = |phase, i| {
-        let mut s = SampleStream::new(StreamId { seed: config.seed, pixel: phase, sample: i, walk: 0 });
+        let mut s = SampleStream::new(StreamId { seed: seed(config.seed), pixel: phase, sample: i, walk: 0 });
         let [a, b] = s.next_2d();
         sample([a, b, s.next_1d()])
     };

@@ -28,12 +28,12 @@ pub enum Way {
 pub const ODD: Way = Way::Only("s=0;s=1;t>=3;s=2&t=2");
 
 impl Way {
-    /// Its settings, for paths of at most nine edges.
+    /// Its settings, for paths of at most nine edges. The seed is changed by [`crate::seed::seed`].
     ///
     /// # Panics
     /// If [`Way::Only`] names no set.
     pub fn settings(self, seed: u64) -> Settings {
-        let base = Settings { seed, max_depth: Some(9), ..Settings::default() };
+        let base = Settings { seed: crate::seed::seed(seed), max_depth: Some(9), ..Settings::default() };
         let integrator = |integrator| Settings { integrator, ..base.clone() };
         let strategies = |text: &str| match text.parse() {
             Ok(strategies) => Settings { strategies, ..base.clone() },

@@ -4,6 +4,7 @@
 use caustica_math::spherical::{Relative, SphericalRectangle, SphericalTriangle};
 use caustica_math::stats::{chi_square_test, sidak};
 use caustica_math::{SampleStream, StreamId};
+use caustica_testkit::seed::seed;
 
 const SAMPLES: u32 = 200_000;
 /// Cells along an edge.
@@ -29,7 +30,7 @@ fn mix(corners: [Relative; 3], [b, c]: [f64; 2]) -> Relative {
 
 /// p-value of samples in cells against the solid angles of the cells.
 fn judge(index: usize, sample: impl Fn([f32; 2]) -> usize, shares: &[f64]) -> f64 {
-    let mut stream = SampleStream::new(StreamId { seed: 6, pixel: index as u32, sample: 0, walk: 0 });
+    let mut stream = SampleStream::new(StreamId { seed: seed(6), pixel: index as u32, sample: 0, walk: 0 });
     let mut counts = vec![0.0; shares.len()];
     (0..SAMPLES).for_each(|_| counts[sample(stream.next_2d())] += 1.0);
     let total: f64 = shares.iter().sum();

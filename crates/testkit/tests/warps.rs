@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use caustica_math::elementary::atan2;
 use caustica_math::stats::{chi_square_test, sidak};
 use caustica_math::{SampleStream, StreamId, Vec3, warp};
+use caustica_testkit::seed::seed;
 
 const SAMPLES: u32 = 200_000;
 const CELLS: usize = 16;
@@ -75,7 +76,7 @@ fn cone(u: [f32; 2], one_minus_cos: f32) -> [f32; 2] {
 fn every_warp_has_its_density() {
     let alpha = sidak(0.01, WARPS.len());
     for (index, w) in WARPS.iter().enumerate() {
-        let id = StreamId { seed: 5, pixel: index as u32, sample: 0, walk: 0 };
+        let id = StreamId { seed: seed(5), pixel: index as u32, sample: 0, walk: 0 };
         let mut stream = SampleStream::new(id);
         let mut counts = vec![0.0; CELLS * CELLS];
         for _ in 0..SAMPLES {

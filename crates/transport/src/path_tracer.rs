@@ -131,8 +131,7 @@ impl Kernel<'_> {
                 let (direction, distance) = lamp.direction_from(*from);
                 let hit = pdf * Edge::of_length(distance).jacobian(lamp.cos(direction));
                 let found = self.scene.lights(self.wavelengths).towards_pdf(*from, lamp);
-                let (hit, found) = (self.heuristic.of(hit), self.heuristic.of(found.0));
-                hit / (hit + found)
+                self.heuristic.share(hit, found.0)
             }
         }
     }
@@ -157,7 +156,6 @@ impl Kernel<'_> {
         if technique == Technique::Emitters || lights.lights.get(found.point.light).is_delta() {
             return value;
         }
-        let (hit, chosen) = (self.heuristic.of(scatter.forward.0 * to_lamp), self.heuristic.of(found.pdf.0));
-        value * (chosen / (hit + chosen))
+        value * self.heuristic.share(found.pdf.0, scatter.forward.0 * to_lamp)
     }
 }

@@ -49,6 +49,16 @@ impl Heuristic {
             }
         }
     }
+
+    /// The weight of a strategy with the density `own`, which is not zero, where there is one other.
+    #[inline]
+    pub fn share(self, own: f32, other: f32) -> f32 {
+        match self {
+            Self::Balance => own / (own + other),
+            // By their ratio: the squares of densities on tiny lamps do not fit into an `f32`.
+            Self::Power => 1.0 / (1.0 + self.of(other / own)),
+        }
+    }
 }
 
 /// What a subpath that ends at vertex i contributes to the sum of all strategies' densities, relative to the
@@ -158,7 +168,9 @@ pub fn each_density(
     };
     // What strategy i's density has beside the plain products.
     let special = |i: usize| {
-        let next_event = if i == 1 && k > 1 { ends.next_event / vertices[0].from_light } else { 1.0 };
+        // A lamp beside others that are brighter by more than an `f32` can tell is never chosen, by either.
+        let apart = i == 1 && k > 1 && vertices[0].from_light > 0.0;
+        let next_event = if apart { ends.next_event / vertices[0].from_light } else { 1.0 };
         let light_paths = if i == k { ends.light_paths } else { 1.0 };
         f64::from(next_event) * f64::from(light_paths)
     };
@@ -178,6 +190,59 @@ pub fn each_density(
         ratio *= f64::from(vertices[i - 1].from_light) / f64::from(vertices[i - 1].from_camera);
         if joins(i) {
             tell(i, square(ratio * special(i)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vertex(from_light: f32, from_camera: f32) -> VertexDensities {
+        VertexDensities { from_light, from_camera, delta: false }
+    }
+
+    /// Found by fuzzing random scenes: the weight was no number.
+    #[test]
+    fn a_lamp_that_is_never_chosen_leaves_all_to_hits() {
+        let path = [vertex(0.0, 0.25), vertex(3.0, 8e11)];
+        let ends = Ends { next_event: 0.0, light_paths: 35.0 };
+        for h in [Heuristic::Balance, Heuristic::Power] {
+            assert_eq!(exhaustive(&path, ends, 0, h, |i| i <= 1), 1.0);
+            assert_eq!(exhaustive(&path, ends, 0, h, |_| true), 1.0);
+        }
+    }
+
+    /// Found by fuzzing random scenes: squares of densities overflowed, and the weight was no number.
+    #[test]
+    fn two_strategies_share_at_any_density() {
+        for h in [Heuristic::Balance, Heuristic::Power] {
+            for scale in [1e-30_f32, 1.0, 1e25] {
+                let [a, b] = [h.share(2.0 * scale, scale), h.share(scale, 2.0 * scale)];
+                let expected = h.of(2.0) / (1.0 + h.of(2.0));
+                assert!(
+                    (a - expected).abs() < 1e-6 && (a + b - 1.0).abs() < 1e-6,
+                    "{h:?}, {scale}: {a}, {b}"
+                );
+            }
+            assert!(h.share(1e-20, 1e20) < 1e-30);
+            assert_eq!([h.share(1e20, 1e-20), h.share(1e-20, 0.0)], [1.0, 1.0]);
+        }
+    }
+
+    /// Densities of powers of two, whose ratios are exact: p₀ = 2·4, p₁ = 16·4, p₂ = 8·32·3.
+    #[test]
+    fn the_ends_have_densities_of_their_own() {
+        let path = [vertex(8.0, 2.0), vertex(32.0, 4.0)];
+        let ends = Ends { next_event: 16.0, light_paths: 3.0 };
+        let densities = [8.0, 64.0, 768.0_f32];
+        for (h, power) in [(Heuristic::Balance, 1), (Heuristic::Power, 2)] {
+            let sum: f32 = densities.iter().map(|d| d.powi(power)).sum();
+            for (s, density) in densities.iter().enumerate() {
+                let weight = exhaustive(&path, ends, s, h, |_| true);
+                assert!((weight - density.powi(power) / sum).abs() < 1e-6, "{s}: {weight}");
+                assert_eq!(exhaustive(&path, ends, s, h, |i| i == s), 1.0);
+            }
         }
     }
 }

@@ -14,6 +14,7 @@ use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten, is_c
 use caustica_testkit::build::{self, diffuse, emit, quad, scene, sphere};
 use caustica_testkit::known_failures::*;
 use caustica_testkit::scenes;
+use caustica_testkit::seed::seed;
 use caustica_testkit::ways::{Way, Way::*};
 use caustica_transport::{Kernel, Scratch, Settings, Sink, Strategy};
 
@@ -178,7 +179,7 @@ fn single_strategies() {
     for (length, passes) in [(1, 150), (2, 300), (3, 300)] {
         let only = |s| {
             let settings =
-                Settings { max_depth: Some(length), seed: 31 + u64::from(s), ..Settings::default() };
+                Settings { max_depth: Some(length), seed: seed(31) + u64::from(s), ..Settings::default() };
             let only = Some(Strategy { s, t: length + 1 - s });
             estimate(&scene, &settings, Plan { passes, block: 8, only })
         };

@@ -16,6 +16,7 @@ use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{add, ellipsoid, emit, glass, light, look, point_light, quad, scene, sphere};
 use caustica_testkit::oracle::{judge, lanes};
 use caustica_testkit::scenes::inside_out;
+use caustica_testkit::seed::seed;
 use caustica_transport::{Contribution, Heuristic, Kernel, Scratch, Settings, Sink, Strategy};
 
 /// Edges of the longest paths.
@@ -83,7 +84,7 @@ impl Sink for Judge<'_> {
 fn settings(strategies: &str, heuristic: Heuristic, exhaustive_weights: bool) -> Settings {
     let strategies = strategies.parse().unwrap();
     let base =
-        Settings { max_depth: Some(DEPTH), roulette_start: Some(1000), seed: 7, ..Settings::default() };
+        Settings { max_depth: Some(DEPTH), roulette_start: Some(1000), seed: seed(7), ..Settings::default() };
     Settings { strategies, heuristic, exhaustive_weights, ..base }
 }
 

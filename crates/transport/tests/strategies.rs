@@ -15,6 +15,7 @@ use caustica_scene::description::{CameraKind, Integrator, MaterialKind, Techniqu
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{diffuse, emit, glass, point_light, sphere};
 use caustica_testkit::scenes::{furnace, glass_kind, point_furnace};
+use caustica_testkit::seed::seed;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink, Strategy};
 
 /// Edges of the longest paths.
@@ -81,8 +82,12 @@ fn check(
     expected: &dyn Fn(Row) -> Option<f64>,
 ) {
     let scene = flatten(all_around(d));
-    let settings =
-        Settings { max_depth: Some(LONGEST), seed: 3, roulette_start: Some(1000), ..Settings::default() };
+    let settings = Settings {
+        max_depth: Some(LONGEST),
+        seed: seed(3),
+        roulette_start: Some(1000),
+        ..Settings::default()
+    };
     let kernel = Kernel::new(&scene, settings);
     let (width, height) = (scene.film.width, scene.film.height);
     let mut scratch = Scratch::default();
@@ -188,8 +193,12 @@ fn whole(name: &str, d: Description, (passes, tolerance): (u32, f64), integrator
     let scene = flatten(all_around(d));
     for integrator in integrators {
         // Late roulette: by then hardly any light is left to be noisy.
-        let settings =
-            Settings { integrator: *integrator, seed: 17, roulette_start: Some(9), ..Settings::default() };
+        let settings = Settings {
+            integrator: *integrator,
+            seed: seed(17),
+            roulette_start: Some(9),
+            ..Settings::default()
+        };
         let kernel = Kernel::new(&scene, settings);
         let (width, height) = (scene.film.width, scene.film.height);
         let (mut scratch, mut moments) = (Scratch::default(), Moments::default());

@@ -127,3 +127,17 @@ fn errors_are_told_in_json_with_the_warnings_before_them() {
     let json = bench.run(&["render", "scene.xml", "--json", "-o", "none/x"]).json();
     assert_eq!((&json["exit_code"], json["warnings"].as_array().unwrap().len()), (&4.into(), 1));
 }
+
+#[test]
+fn untrusted_scenes_stay_in_their_folder() {
+    let bench = Bench::new();
+    std::fs::create_dir(bench.path("inner")).unwrap();
+    bench.write("inner/scene.xml", SCENE.replace("floor.obj", "../floor.obj"));
+    bench.run(&["info", "inner/scene.xml"]).ok();
+    for command in
+        [&["info", "inner/scene.xml", "--untrusted"][..], &["render", "inner/scene.xml", "--untrusted"]]
+    {
+        bench.run(command).fails(3, &["scene.xml:11:", "`../floor.obj`", "outside of the scene's folder"]);
+    }
+    bench.run(&["info", "scene.xml", "--untrusted"]).ok();
+}

@@ -217,3 +217,34 @@ proptest! {
         }
     }
 }
+
+/// Found by fuzzing random scenes: sums of bright splats wrapped around, and pixels came out negative.
+#[test]
+fn sums_beyond_64_bits_stay_at_the_largest_number() {
+    let (filter, huge) = (PixelFilter::new(&Filter::Box { radius: 0.5 }), Rgb::splat(1e30));
+    let bright = || {
+        let film = Film::new(whole()).unwrap();
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    let mut buffer = film.light_buffer().unwrap();
+                    for _ in 0..50 {
+                        film.add_eye([3, 4], huge);
+                        film.splat_light(&filter, Vec2::new(5.5, 6.5), huge);
+                        film.splat_into(&mut buffer, &filter, Vec2::new(7.5, 8.5), huge);
+                    }
+                    film.flush(&mut buffer);
+                });
+            }
+        });
+        film.finish_samples(1, 1);
+        film
+    };
+    let (film, other) = (bright(), bright());
+    assert!(film.bits_equal(&other));
+    film.merge(&other).unwrap();
+    let sums: Vec<i64> = film.sums().flatten().filter(|sum| *sum != 0).collect();
+    assert_eq!(sums, [i64::MAX; 9]);
+    let picture = film.develop();
+    assert!(picture.eye.iter().chain(&picture.light).all(|p| p.is_valid()));
+}

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufReader, Seek};
+use std::panic::catch_unwind;
 use std::path::Path;
 
 use caustica_math::Rgb;
@@ -22,6 +23,12 @@ const CLOSEST_PACKING: u64 = 1100;
 /// Reads a picture that [`write_exr`](super::write_exr) wrote, and what is known about it. The layers
 /// `eye` and `light` must be there; anything else in the file is passed over.
 pub fn read_exr(path: &Path) -> Result<(Picture, Metadata), FilmError> {
+    // The decoder is other people's code, and no file may bring the program down.
+    catch_unwind(|| read_whole(path))
+        .unwrap_or_else(|_| Err(FilmError::format(path, "the OpenEXR decoder failed; the file is damaged")))
+}
+
+fn read_whole(path: &Path) -> Result<(Picture, Metadata), FilmError> {
     let io = |e| FilmError::io(path, e);
     let mut file = File::open(path).map_err(io)?;
     let length = file.metadata().map_err(io)?.len();
@@ -154,6 +161,8 @@ fn pixels(file: File) -> exr::error::Result<[Vec<Rgb>; 3]> {
         )
         .first_valid_layer()
         .all_attributes()
+        // A panic of the decoder on a thread of its own would end the process.
+        .non_parallel()
         .from_buffered(BufReader::new(file))?;
     Ok(image.layer_data.channel_data.pixels.1)
 }

@@ -234,3 +234,28 @@ fn layers_have_names() {
     assert!(write_layers(&path, [2, 2], window, (&layers, &facts)).is_err());
     assert!(write_layers(&path, [5, 4], window, (&[layers[0], layers[0]], &facts)).is_err());
 }
+
+/// Found by fuzzing: a block of B44 made the decoder panic on a thread of its own, which ended the process.
+#[test]
+fn a_decoder_that_panics_is_an_error() {
+    use exr::prelude::{
+        AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Layer, LayerAttributes, f16,
+    };
+    let names = ["eye", "light"].into_iter().flat_map(|l| ["R", "G", "B"].map(|c| format!("{l}.{c}")));
+    let halves = || FlatSamples::F16(vec![f16::ONE; 16]);
+    let channels = AnyChannels::sort(names.map(|n| AnyChannel::new(n.as_str(), halves())).collect());
+    let encoding = Encoding { compression: Compression::B44, ..Encoding::UNCOMPRESSED };
+    let layer = Layer::new((4, 4), LayerAttributes::named("film"), encoding, channels);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.exr");
+    Image::from_layer(layer).write().to_file(&path).unwrap();
+    read_exr(&path).unwrap();
+    let mut bytes = fs::read(&path).unwrap();
+    // Differences below zero: the decoder's arithmetic wraps around, or panics where that is checked.
+    let last_block = bytes.len() - 14;
+    bytes[last_block..].fill(0);
+    fs::write(&path, bytes).unwrap();
+    if let Err(error) = read_exr(&path) {
+        assert!(error.to_string().contains("decoder failed"), "{error}");
+    }
+}

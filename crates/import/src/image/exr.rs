@@ -3,21 +3,24 @@
 use std::io::Cursor;
 
 use caustica_math::Rgb;
-use caustica_scene::MemoryLimit;
 use exr::meta::MetaData;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 
-use super::{Fault, Pixels, check_memory, check_size};
+use super::{Fault, Pixels, Room};
+
+/// No compression of the format packs pixels closer than this (deflate reaches 1032 to 1).
+const CLOSEST_PACKING: u64 = 1100;
 
 /// The most samples, over all channels, that the first layer may have.
 const MOST_SAMPLES: u64 = 1 << 30;
 
-pub(super) fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault> {
+pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, Fault> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
     for header in &meta.headers {
         let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
-        let size = check_size(width, height)?;
-        check_memory(size, 4 * header.channels.list.len() as u64, memory)?;
+        let size = room.check(width, height)?;
+        room.holds(width * height * 8 * header.channels.bytes_per_pixel as u64, CLOSEST_PACKING)?;
+        room.fits(size, 4 * header.channels.list.len() as u64)?;
         if width * height * header.channels.list.len() as u64 > MOST_SAMPLES {
             return Err("it has too many channels for its size".into());
         }
@@ -28,10 +31,12 @@ pub(super) fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault>
         .all_channels()
         .first_valid_layer()
         .all_attributes()
+        // A panic of the decoder on a thread of its own would end the process.
+        .non_parallel()
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
     let layer = &image.layer_data;
-    let (width, height) = check_size(layer.size.x() as u64, layer.size.y() as u64)?;
+    let (width, height) = room.check(layer.size.x() as u64, layer.size.y() as u64)?;
     let channels = &layer.channel_data.list;
     let find = |name: &str| {
         let channel = channels.iter().find(|c| c.name.eq_case_insensitive(name))?;

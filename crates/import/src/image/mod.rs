@@ -41,21 +41,36 @@ pub fn read_image(path: &Path) -> Result<ReadImage, Diagnostic> {
 
 /// The same in so much memory. An image that would take more is refused when its size is known, before it is decoded.
 pub fn read_image_within(path: &Path, memory: MemoryLimit) -> Result<ReadImage, Diagnostic> {
-    let fail = |fault: Fault| match fault {
-        Fault::File(why) => Diagnostic::error(format!("cannot read the image `{}`: {why}", path.display())),
-        Fault::Memory(e) => shortage(&format!("the image `{}`", path.display()), e)
-            .hint("make it smaller, or render where there is more memory"),
-    };
-    let bytes = files::read(path, LARGEST_FILE).map_err(|why| fail(why.into()))?;
+    read_within(path, MOST_PIXELS, memory)
+}
+
+/// The same of the bytes of a file; `file_name` is for messages.
+pub fn decode_image(bytes: &[u8], file_name: &str) -> Result<ReadImage, Diagnostic> {
+    let room = Room { file: bytes.len() as u64, pixels: MOST_PIXELS, memory: MemoryLimit::Machine };
+    decode_within(bytes, file_name, room)
+}
+
+/// Reads an image of at most so many pixels.
+pub(crate) fn read_within(
+    path: &Path,
+    most_pixels: u64,
+    memory: MemoryLimit,
+) -> Result<ReadImage, Diagnostic> {
+    let name = path.display().to_string();
+    let bytes = files::read(path, LARGEST_FILE).map_err(|why| cannot_read(&name, why.into()))?;
+    let room = Room { file: bytes.len() as u64, pixels: most_pixels.min(MOST_PIXELS), memory };
+    decode_within(&bytes, &name, room)
+}
+
+fn decode_within(bytes: &[u8], file_name: &str, room: Room) -> Result<ReadImage, Diagnostic> {
     // The decoders are other people's code, and no file may bring the program down.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode(&bytes, memory)))
+    let decoded = catch_unwind(AssertUnwindSafe(|| decode(bytes, room)))
         .unwrap_or_else(|_| Err("its decoder failed; the file is damaged".into()));
-    let mut image = decoded.map_err(fail)?;
+    let mut image = decoded.map_err(|fault| cannot_read(file_name, fault))?;
     let changed = image.pixels.iter_mut().flat_map(|p| p.0.iter_mut()).map(clean).filter(|c| *c).count();
     let mut warnings = Vec::new();
     if changed > 0 {
-        let message =
-            format!("{changed} values of the image `{}` are negative or not finite", path.display());
+        let message = format!("{changed} values of the image `{file_name}` are negative or not finite");
         warnings.push(
             Diagnostic::warning(message)
                 .hint(format!("infinity is read as {LARGEST_HALF}, all others of them as 0")),
@@ -63,6 +78,14 @@ pub fn read_image_within(path: &Path, memory: MemoryLimit) -> Result<ReadImage, 
     }
     let Pixels { width, height, pixels } = image;
     Ok(ReadImage { image: Image { width, height, pixels: pixels.into() }, warnings })
+}
+
+fn cannot_read(name: &str, fault: Fault) -> Diagnostic {
+    match fault {
+        Fault::File(why) => Diagnostic::error(format!("cannot read the image `{name}`: {why}")),
+        Fault::Memory(e) => shortage(&format!("the image `{name}`"), e)
+            .hint("make it smaller, or render where there is more memory"),
+    }
 }
 
 /// What decoders give.
@@ -92,30 +115,49 @@ impl From<&str> for Fault {
     }
 }
 
-/// Whether an image fits that has so many bytes a pixel in what its decoder gives: beside that there are its colours,
-/// and, where they are put together, a copy of them.
-fn check_memory((width, height): (u32, u32), decoded: u64, memory: MemoryLimit) -> Result<(), Fault> {
-    let pixels = u64::from(width) * u64::from(height);
-    memory.check(pixels * (decoded + 2 * size_of::<Rgb>() as u64)).map_err(Fault::Memory)
-}
-
-fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault> {
+fn decode(bytes: &[u8], room: Room) -> Result<Pixels, Fault> {
     match bytes {
-        [0x89, b'P', b'N', b'G', ..] => png::decode(bytes, memory),
-        [0xFF, 0xD8, 0xFF, ..] => jpeg::decode(bytes, memory),
-        [0x76, 0x2F, 0x31, 0x01, ..] => exr::decode(bytes, memory),
+        [0x89, b'P', b'N', b'G', ..] => png::decode(bytes, room),
+        [0xFF, 0xD8, 0xFF, ..] => jpeg::decode(bytes, room),
+        [0x76, 0x2F, 0x31, 0x01, ..] => exr::decode(bytes, room),
         _ => Err("it is neither PNG nor JPEG nor OpenEXR".into()),
     }
 }
 
-/// Refuses sizes that no picture has, before anything is allocated for them.
-fn check_size(width: u64, height: u64) -> Result<(u32, u32), String> {
-    if width == 0 || height == 0 {
-        return Err("it has no pixels".into());
+/// What limits the size of an image.
+#[derive(Clone, Copy)]
+struct Room {
+    /// Length of the file in bytes.
+    file: u64,
+    /// The most pixels that are taken.
+    pixels: u64,
+    /// What there is for it.
+    memory: MemoryLimit,
+}
+
+impl Room {
+    /// Refuses sizes that no picture has, before anything is allocated for them.
+    fn check(self, width: u64, height: u64) -> Result<(u32, u32), String> {
+        if width == 0 || height == 0 {
+            return Err("it has no pixels".into());
+        }
+        match (u32::try_from(width), u32::try_from(height), width.checked_mul(height)) {
+            (Ok(w), Ok(h), Some(pixels)) if pixels <= self.pixels => Ok((w, h)),
+            _ => Err(format!("{width} × {height} pixels are more than the {} that are taken", self.pixels)),
+        }
     }
-    match (u32::try_from(width), u32::try_from(height), width.checked_mul(height)) {
-        (Ok(w), Ok(h), Some(pixels)) if pixels <= MOST_PIXELS => Ok((w, h)),
-        _ => Err(format!("{width} × {height} pixels are more than the {MOST_PIXELS} that are taken")),
+
+    /// Whether an image fits that has so many bytes a pixel in what its decoder gives: beside that there are its
+    /// colours, and, where they are put together, a copy of them.
+    fn fits(self, (width, height): (u32, u32), decoded: u64) -> Result<(), Fault> {
+        let pixels = u64::from(width) * u64::from(height);
+        self.memory.check(pixels * (decoded + 2 * size_of::<Rgb>() as u64)).map_err(Fault::Memory)
+    }
+
+    /// Refuses so many bits of pixels, of which the format cannot pack more than `closest` into one bit.
+    fn holds(self, bits: u64, closest: u64) -> Result<(), String> {
+        let most = self.file.saturating_mul(8).saturating_mul(closest);
+        if bits <= most { Ok(()) } else { Err("it is cut off, or its size is wrong".into()) }
     }
 }
 

@@ -3,25 +3,21 @@
 use std::io::Cursor;
 
 use caustica_math::Rgb;
-use caustica_scene::MemoryLimit;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
-use super::{Fault, Pixels, check_memory, check_size, srgb};
+use super::{Fault, Pixels, Room, srgb};
 
 /// Deflate cannot shrink data by more than this factor.
 const BEST_COMPRESSION: u64 = 1032;
 
-pub(super) fn decode(bytes: &[u8], memory: MemoryLimit) -> Result<Pixels, Fault> {
+pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, Fault> {
     let mut decoder = Decoder::new_with_limits(Cursor::new(bytes), Limits { bytes: 1 << 30 });
     // Palettes become colours, and 1, 2 and 4 bits become 8; 16 stay.
     decoder.set_transformations(Transformations::EXPAND);
     let header = decoder.read_header_info().map_err(|e| e.to_string())?;
-    let (width, height) = check_size(header.width.into(), header.height.into())?;
-    check_memory((width, height), (header.bits_per_pixel() as u64).div_ceil(8).max(4), memory)?;
-    let bits = u64::from(width) * u64::from(height) * header.bits_per_pixel() as u64;
-    if bits / 8 > bytes.len() as u64 * BEST_COMPRESSION {
-        return Err("it is cut off, or its size is wrong".into());
-    }
+    let (width, height) = room.check(header.width.into(), header.height.into())?;
+    room.holds(u64::from(width) * u64::from(height) * header.bits_per_pixel() as u64, BEST_COMPRESSION)?;
+    room.fits((width, height), (header.bits_per_pixel() as u64).div_ceil(8).max(4))?;
     let mut reader = decoder.read_info().map_err(|e| e.to_string())?;
     let size = reader.output_buffer_size().ok_or("it is too large")?;
     let mut buffer = vec![0; size];

@@ -99,6 +99,9 @@ fn check_film(film: &FilmSettings) -> Result<(), String> {
     Ok(())
 }
 
+/// Mitchell and Netravali look at 0 to 1; far outside, the lobes drown the picture in noise.
+const LOBES: Bounds = Bounds::Between(-100.0, 100.0);
+
 fn filter(object: &Object, cx: &mut Context) -> Result<Filter, Diagnostic> {
     let mut fields = Fields::new(object, cx.place);
     let radius =
@@ -110,8 +113,8 @@ fn filter(object: &Object, cx: &mut Context) -> Result<Filter, Diagnostic> {
         },
         "mitchell" => Filter::Mitchell {
             radius: radius(&mut fields, 2.0)?,
-            b: fields.float(&["B"], 1.0 / 3.0, Bounds::Finite)?,
-            c: fields.float(&["C"], 1.0 / 3.0, Bounds::Finite)?,
+            b: fields.float(&["B"], 1.0 / 3.0, LOBES)?,
+            c: fields.float(&["C"], 1.0 / 3.0, LOBES)?,
         },
         "tent" => Filter::Tent { radius: radius(&mut fields, 1.0)? },
         "box" => Filter::Box { radius: radius(&mut fields, 0.5)? },

@@ -9,15 +9,43 @@ use caustica_scene::memory::shortage;
 use caustica_scene::{Description, Diagnostic, Origin};
 
 use super::tree::Place;
-use crate::files::Folder;
+use crate::files::{Folder, Trust};
+use crate::suggest::shorten;
 use crate::{image, obj};
 
 /// The most warnings that are kept: more of them help nobody.
 const MOST_WARNINGS: usize = 1000;
 
-/// The most triangles of a scene. A mesh that is named many times is there many times, so that a short
-/// file could fill any memory.
-const MOST_TRIANGLES: usize = 1 << 28;
+/// What a scene may hold. A mesh that is named many times is there many times, and deflate shrinks a plain
+/// image a thousandfold, so that a short file could fill any memory.
+#[derive(Clone, Copy)]
+struct Limits {
+    /// Triangles of all shapes together.
+    triangles: usize,
+    /// Pixels of all images together.
+    pixels: u64,
+}
+
+impl Limits {
+    /// About 1 GB each where the scene is not trusted.
+    fn of(trust: Trust) -> Self {
+        match trust {
+            Trust::Full => Self { triangles: 1 << 28, pixels: u64::MAX },
+            Trust::OwnFolder => Self { triangles: 1 << 24, pixels: 1 << 26 },
+        }
+    }
+}
+
+fn too_many_triangles(place: Place, trust: Trust, range: &Range<usize>) -> Diagnostic {
+    let most = Limits::of(trust).triangles;
+    place.error(format!("the scene has more than {most} triangles"), range.clone())
+}
+
+/// Takes an amount from what is left; `None` if that is not enough.
+fn take(left: &mut usize, amount: usize) -> Option<()> {
+    *left = left.checked_sub(amount)?;
+    Some(())
+}
 
 /// Warnings, up to a number.
 #[derive(Default)]
@@ -53,7 +81,8 @@ pub(super) struct Context<'c> {
     meshes: BTreeMap<PathBuf, usize>,
     images: BTreeMap<PathBuf, ImageId>,
     default_material: Option<MaterialId>,
-    triangles: usize,
+    /// What may still come.
+    left: Limits,
 }
 
 impl<'c> Context<'c> {
@@ -66,7 +95,7 @@ impl<'c> Context<'c> {
             meshes: BTreeMap::new(),
             images: BTreeMap::new(),
             default_material: None,
-            triangles: 0,
+            left: Limits::of(folder.trust),
         }
     }
 
@@ -81,39 +110,41 @@ impl<'c> Context<'c> {
 
     /// The mesh of a file, for the shape that is added next; `range` is where the file is named.
     pub(super) fn mesh(&mut self, file: &str, range: &Range<usize>) -> Result<Mesh, Diagnostic> {
-        let path = self.folder.base.join(file);
-        let known = self.meshes.get(&path).map(|shape| &self.description.shapes[*shape].geometry);
-        let mesh = if let Some(Geometry::Mesh(mesh)) = known {
-            let bytes = mesh_bytes(mesh);
-            let error = |e| shortage(&format!("another copy of the mesh `{file}`"), e);
-            self.folder.memory.check(bytes).map_err(error).map_err(|e| self.place_if_unplaced(e, range))?;
-            mesh.clone()
-        } else {
-            let read = match self.folder.embedded(file) {
-                Some(text) => obj::read_obj(text.as_bytes(), file),
-                None => obj::load_obj_within(&path, self.folder.memory),
-            };
-            let read = read.map_err(|e| self.place_if_unplaced(e, range))?;
-            read.warnings.into_iter().for_each(|w| self.warnings.push(w));
-            self.meshes.insert(path, self.description.shapes.len());
-            read.mesh
+        let embedded = self.folder.embedded(file);
+        let path = match embedded {
+            Some(_) => PathBuf::from(file),
+            None => self.path("mesh", file, range)?,
         };
-        self.triangles += mesh.triangles.len();
-        if self.triangles > MOST_TRIANGLES {
-            let message = format!("the scene has more than {MOST_TRIANGLES} triangles");
-            return Err(self.place.error(message, range.clone()));
+        let known = self.meshes.get(&path).map(|shape| &self.description.shapes[*shape].geometry);
+        if let Some(Geometry::Mesh(mesh)) = known {
+            take(&mut self.left.triangles, mesh.triangles.len())
+                .ok_or_else(|| too_many_triangles(self.place, self.folder.trust, range))?;
+            let error = |e| shortage(&format!("another copy of the mesh `{file}`"), e);
+            let fits = self.folder.memory.check(mesh_bytes(mesh)).map_err(error);
+            fits.map_err(|e| self.place_if_unplaced(e, range))?;
+            return Ok(mesh.clone());
         }
-        Ok(mesh)
+        let read = match embedded {
+            Some(text) => obj::read_obj(text.as_bytes(), file),
+            None => obj::load_obj_within(&path, self.folder.memory),
+        };
+        let read = read.map_err(|e| self.place_if_unplaced(e, range))?;
+        read.warnings.into_iter().for_each(|w| self.warnings.push(w));
+        take(&mut self.left.triangles, read.mesh.triangles.len())
+            .ok_or_else(|| too_many_triangles(self.place, self.folder.trust, range))?;
+        self.meshes.insert(path, self.description.shapes.len());
+        Ok(read.mesh)
     }
 
     /// The image of a file; `range` is where it is named.
     pub(super) fn image(&mut self, file: &str, range: &Range<usize>) -> Result<ImageId, Diagnostic> {
-        let path = self.folder.base.join(file);
+        let path = self.path("image", file, range)?;
         if let Some(id) = self.images.get(&path) {
             return Ok(*id);
         }
-        let read = image::read_image_within(&path, self.folder.memory)
+        let read = image::read_within(&path, self.left.pixels, self.folder.memory)
             .map_err(|e| self.place_if_unplaced(e, range))?;
+        self.left.pixels -= read.image.pixels.len() as u64;
         for warning in read.warnings {
             let placed = self.place_if_unplaced(warning, range);
             self.warnings.push(placed);
@@ -121,6 +152,14 @@ impl<'c> Context<'c> {
         let id = self.description.add_image(read.image);
         self.images.insert(path, id);
         Ok(id)
+    }
+
+    /// The path of a mesh or an image.
+    fn path(&self, what: &str, file: &str, range: &Range<usize>) -> Result<PathBuf, Diagnostic> {
+        self.folder.resolve(file).map_err(|why| {
+            let message = format!("cannot read the {what} `{}`: {why}", shorten(file));
+            self.place.error(message, range.clone())
+        })
     }
 
     fn place_if_unplaced(&self, diagnostic: Diagnostic, range: &Range<usize>) -> Diagnostic {
@@ -135,5 +174,42 @@ impl<'c> Context<'c> {
         *self
             .default_material
             .get_or_insert_with(|| description.add_material(MaterialKind::Diffuse { albedo }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use caustica_math::Transform;
+    use caustica_scene::description::Shape;
+
+    use super::*;
+    use crate::source::Source;
+
+    /// Also of a mesh that is read once and named again.
+    #[test]
+    fn triangles_are_counted_wherever_they_are_named() {
+        let source = Source::new("s.xml", "<scene/>");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        let folder =
+            Folder { base: Path::new(""), embedded: &[("a", text), ("b", text)], trust: Trust::OwnFolder };
+        for names in [["a", "a", "a"], ["a", "b", "a"], ["a", "a", "b"]] {
+            let mut warnings = Warnings::default();
+            let mut cx = Context::new(Place { source: &source }, folder, &mut warnings);
+            cx.left.triangles = 2;
+            for name in &names[..2] {
+                let geometry = Geometry::Mesh(cx.mesh(name, &(0..1)).unwrap());
+                let (to_world, material) = (Transform::IDENTITY, MaterialId(0));
+                let name = String::new();
+                let shape = Shape { name, geometry, to_world, material, emission: None, origin: None };
+                cx.description.shapes.push(shape);
+            }
+            let error = cx.mesh(names[2], &(0..1)).unwrap_err();
+            assert!(
+                error.message.contains("more than 16777216 triangles") && error.origin.is_some(),
+                "{error}"
+            );
+        }
     }
 }

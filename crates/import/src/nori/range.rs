@@ -3,8 +3,6 @@
 /// Bounds of a number.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Bounds {
-    /// Any finite number.
-    Finite,
     /// More than 0.
     Positive,
     /// 0 or more.
@@ -21,7 +19,6 @@ impl Bounds {
     /// The value, or the rule that it breaks.
     pub(super) fn check(self, value: f64) -> Result<f32, String> {
         let (allowed, rule) = match self {
-            Self::Finite => (true, "must be finite".to_owned()),
             Self::Positive => (value > 0.0, "must be finite and more than 0".to_owned()),
             Self::NotNegative => (value >= 0.0, "must be finite and not negative".to_owned()),
             Self::PositiveOrInfinite => (value > 0.0, "must be more than 0".to_owned()),
@@ -31,7 +28,8 @@ impl Bounds {
         let single = value as f32;
         let infinite_is_meant = matches!(self, Self::PositiveOrInfinite) && value == f64::INFINITY;
         // A positive number must not become zero by being stored in 32 bits.
-        let kept = single.is_finite() && (single != 0.0 || value == 0.0 || matches!(self, Self::Finite));
+        let kept = single.is_finite()
+            && (single != 0.0 || value == 0.0 || matches!(self, Self::Between(a, _) if a < 0.0));
         if allowed && (kept || infinite_is_meant) { Ok(single) } else { Err(rule) }
     }
 }
@@ -54,8 +52,8 @@ mod tests {
     #[test]
     fn bounds_hold_for_the_stored_value() {
         assert!(Bounds::Positive.check(1e-60).is_err());
-        assert!(Bounds::Finite.check(1e60).is_err());
-        assert!(Bounds::Finite.check(1e-60).is_ok());
+        assert!(Bounds::Between(-1.0, 1.0).check(1e60).is_err());
+        assert!(Bounds::Between(-1.0, 1.0).check(1e-60).is_ok());
         assert_eq!(Bounds::PositiveOrInfinite.check(f64::INFINITY), Ok(f32::INFINITY));
         assert!(Bounds::PositiveOrInfinite.check(1e60).is_err());
         assert!(Bounds::Between(0.0, 180.0).check(180.0).is_err());

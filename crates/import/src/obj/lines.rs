@@ -41,7 +41,7 @@ impl<R: BufRead> Lines<R> {
             let room = LONGEST_LINE - self.buffer.len();
             let mut limited = self.reader.by_ref().take(room as u64);
             let read = limited.read_until(b'\n', &mut self.buffer).map_err(LineError::Io)?;
-            self.physical_lines += 1;
+            self.physical_lines += u32::from(read > 0);
             if read == room && self.buffer.last() != Some(&b'\n') {
                 return Err(LineError::TooLong);
             }
@@ -54,9 +54,9 @@ impl<R: BufRead> Lines<R> {
     /// Whether the next physical line belongs to this one. Comments never go on: paths in them end in a
     /// backslash now and then.
     fn continues(&self) -> bool {
-        self.buffer.trim_ascii_end().last() == Some(&b'\\')
-            && line_end(&self.buffer, self.buffer.trim_ascii_end().len() - 1)
-            && self.buffer.trim_ascii_start().first() != Some(&b'#')
+        let Some(line) = self.buffer.strip_suffix(b"\n") else { return false };
+        let line = line.strip_suffix(b"\r").unwrap_or(line);
+        line.ends_with(b"\\") && line.trim_ascii_start().first() != Some(&b'#')
     }
 
     /// (line, column) of a byte of the logical line, from 1.

@@ -187,3 +187,13 @@ fn impossible_filters_become_the_pixel() {
         assert_eq!(PixelFilter::new(&filter), pixel, "{filter:?}");
     }
 }
+
+/// Found by fuzzing random scenes: lobes so large that the weight of a sample overflowed.
+#[test]
+fn lobes_that_cancel_give_the_pixel_itself() {
+    let pixel = PixelFilter::new(&Filter::Box { radius: 0.5 });
+    for (b, c) in [(1e30, 0.3), (-1e30, 0.3), (0.3, 1e38), (1e6, 1.0), (f32::NAN, 0.0)] {
+        assert_eq!(PixelFilter::new(&Filter::Mitchell { radius: 2.0, b, c }), pixel, "{b}, {c}");
+    }
+    assert_ne!(PixelFilter::new(&Filter::Mitchell { radius: 2.0, b: 30.0, c: -30.0 }), pixel);
+}

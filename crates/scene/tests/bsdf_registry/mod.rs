@@ -7,6 +7,7 @@ use caustica_math::{Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, wa
 use caustica_scene::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric, Walk, metals,
 };
+use caustica_testkit::seed::seed;
 
 /// The roughnesses that rough surfaces are tested at.
 pub const ALPHAS: [f32; 4] = [0.02, 0.1, 0.3, 0.8];
@@ -123,7 +124,7 @@ pub fn given_directions(bsdf: &Bsdf) -> Vec<Vec3> {
 
 /// Random numbers of a test: `stream` tells its parts from one another.
 pub fn random(stream: u32) -> SampleStream {
-    SampleStream::new(StreamId { seed: 20_240, pixel: stream, sample: 0, walk: 0 })
+    SampleStream::new(StreamId { seed: seed(20_240), pixel: stream, sample: 0, walk: 0 })
 }
 
 /// Three random numbers.

@@ -12,6 +12,7 @@ use caustica_scene::description::{Image, ImageId, LightKind, Texture, TextureTra
 use caustica_scene::light::{Anchor, EnvironmentLight, Light, LightPoint, LightQuery};
 use caustica_scene::{Description, Scene};
 use caustica_testkit::build;
+use caustica_testkit::seed::seed;
 
 /// A lamp, alone in its scene, and its power in W (as luminance).
 pub struct Example {
@@ -81,7 +82,7 @@ impl Example {
 
 /// A stream of random numbers of that name.
 pub fn random(name: u32) -> SampleStream {
-    SampleStream::new(StreamId { seed: 31, pixel: name, sample: 0, walk: 0 })
+    SampleStream::new(StreamId { seed: seed(31), pixel: name, sample: 0, walk: 0 })
 }
 
 fn view(from: [f32; 3], towards: [f32; 3], irradiance: impl Into<Option<f64>>) -> View {

@@ -1,0 +1,79 @@
+//! Random valid scenes, rendered by every integrator.
+
+use caustica_math::{Filter, Sampler, Vec3};
+use caustica_render::{Control, INTEGRATOR_NAMES, RenderOptions, Session, integrator_by_name};
+use caustica_scene::Scene;
+use caustica_testkit::random_scene::{Choices, bytes_of_seed, random_scene};
+use caustica_transport::{Heuristic, Settings};
+
+/// Samples a pixel of every render: as many units of work, so that two threads share them.
+const SAMPLES: u32 = 3;
+
+/// What must hold of every scene under every setting. What else is known of any scene, such as the agreement of
+/// integrators, is added here.
+const CHECKS: &[fn(&Scene, &Settings)] = &[renders_soundly];
+
+/// Builds a scene out of the bytes and checks all that is known of it.
+///
+/// # Panics
+/// If a promise is broken.
+pub fn scenes(data: &[u8]) {
+    let mut choices = Choices::new(data);
+    let settings = settings(&mut choices);
+    // Extreme scales may leave a triangle or a camera without a normal, which is an error with words.
+    let Ok((scene, _)) = Scene::new(random_scene(&mut choices)) else { return };
+    CHECKS.iter().for_each(|check| check(&scene, &settings));
+}
+
+/// Inputs to start from.
+pub fn seeds() -> Vec<Vec<u8>> {
+    (0..64).map(bytes_of_seed).collect()
+}
+
+/// How the scene is rendered, but for the integrator.
+fn settings(choices: &mut Choices) -> Settings {
+    let sets = ["all", "t>=2", "s=0;s=1", "t=1", "2,2"];
+    Settings {
+        seed: choices.below(256) as u64,
+        max_depth: [None, Some(3), Some(5), Some(12)][choices.below(4)],
+        roulette_start: [None, Some(1), Some(9)][choices.below(3)],
+        sampler: [Sampler::Sobol, Sampler::Independent][choices.below(2)],
+        heuristic: [Heuristic::Balance, Heuristic::Power][choices.below(2)],
+        exhaustive_weights: choices.once_in(8),
+        strategies: choices.pick(&sets).parse().expect("a set of strategies"),
+        ..Settings::default()
+    }
+}
+
+/// Every integrator gives finite pixels, none of them negative unless the filter is, and the same bits on one
+/// thread and on two.
+fn renders_soundly(scene: &Scene, settings: &Settings) {
+    let (_, radius) = scene.bounding_sphere();
+    for (name, _) in INTEGRATOR_NAMES {
+        let [eye, forward] = [scene.camera.position(), scene.camera.forward()].map(|v: Vec3| [v.x, v.y, v.z]);
+        let integrator = integrator_by_name(name, 2.0 * radius, eye, forward);
+        let settings = Settings { integrator: integrator.expect("a known name"), ..settings.clone() };
+        let render = |threads| {
+            let options = RenderOptions {
+                settings: settings.clone(),
+                samples: SAMPLES,
+                threads: Some(threads),
+                ..RenderOptions::default()
+            };
+            let session = Session::new(scene, options).unwrap_or_else(|e| panic!("{name}: {e}"));
+            session.run(&Control::default(), |_| {}).unwrap_or_else(|e| panic!("{name}: {e}"));
+            session
+        };
+        let (one, two) = (render(1), render(2));
+        assert!(one.film().bits_equal(two.film()), "{name}: one thread and two differ");
+        assert_eq!(one.film().counts().invalid, 0, "{name}: contributions that are no numbers");
+        let picture = one.film().develop();
+        let may_be_negative = matches!(scene.film.filter, Filter::Mitchell { .. });
+        for (layer, pixels) in [("eye", &picture.eye), ("light", &picture.light)] {
+            for (i, pixel) in pixels.iter().enumerate() {
+                let sound = pixel.0.iter().all(|c| c.is_finite() && (*c >= 0.0 || may_be_negative));
+                assert!(sound, "{name}: pixel {i} of the {layer} image is {:?}", pixel.0);
+            }
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Where inputs start from.
+
+use caustica_film::{LightImage, Metadata, Picture, Window};
+use caustica_math::Rgb;
+
+use crate::folder;
+
+/// The smallest mesh.
+pub const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// What faces, corners and lines may look like.
+const MESH: &str = "# a mesh\nv 0 0 0\nv 1.5 0 -.5\nv 1 1e0 0\nv 0 1 0\nv .5 .5 .1\nvt 0 0\nvt 1 1\nvn 0 0 1\n\
+    f 1/1/1 2/2/1 3/1/1 \\\n 4/2/1\ng x\nf -5//1 -4//1 -1//1\nf 1 2 5 3 4\n";
+
+/// Scenes of the gallery.
+const GALLERY: [&str; 7] = [
+    include_str!("../../../scenes/cornell/cornell.xml"),
+    include_str!("../../../scenes/furnace/furnace.xml"),
+    include_str!("../../../scenes/final/final.xml"),
+    include_str!("../../../scenes/glass/glass.xml"),
+    include_str!("../../../scenes/gap/gap.xml"),
+    include_str!("../../../scenes/bulb/bulb.xml"),
+    include_str!("../../../scenes/veach-mi/veach-mi.xml"),
+];
+
+/// Most plugins and properties in one scene.
+const FEATURES: &str = r#"<?xml version="1.0"?>
+<scene>
+  <integrator type="path_mis"/>
+  <sampler type="independent"><integer name="sampleCount" value="4"/></sampler>
+  <camera type="thinlens">
+    <float name="fov" value="45.5"/><integer name="width" value="80"/><integer name="height" value="60"/>
+    <float name="lensRadius" value=".1"/><float name="focalDistance" value="4"/>
+    <transform name="toWorld"><lookat target="0, 0, 0" origin="1, 2, 3" up="0, 1, 0"/>
+      <matrix value="1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/><rotate angle="3" axis="0,0,1"/></transform>
+    <rfilter type="mitchell"><float name="B" value=".5"/></rfilter>
+  </camera>
+  <mesh type="sphere"><point name="center" value="1 2 3"/><float name="radius" value="0.5"/>
+    <bsdf type="diffuse"><texture type="checkerboard_color" name="albedo"><vector name="scale" value=".1 .1"/></texture></bsdf>
+    <emitter type="area"><color name="radiance" value="10, 20.5, 3e1"/></emitter></mesh>
+  <mesh type="obj"><string name="filename" value="tri.obj"/>
+    <transform name="toWorld"><scale value="2,2,-2"/><translate value="0,0,5"/></transform>
+    <bsdf type="microfacet"><float name="alpha" value=".3"/>
+      <texture type="image_texture" name="kd"><string name="filename" value="tile.png"/></texture></bsdf></mesh>
+  <emitter type="spotlight"><point name="target" value="1 0 0"/><float name="power" value="3"/>
+    <float name="outerAngle" value="40"/></emitter>
+  <emitter type="envmap"><string name="filename" value="sky.exr"/><float name="scale" value="0.5"/></emitter>
+</scene>"#;
+
+/// A scene file that carries tests.
+const TESTS: &str = r#"<scene>
+  <test type="ttest"><string name="angles" value="0 1"/><string name="references" value=".1 .2"/>
+    <bsdf type="roughconductor"><string name="material" value="Au"/></bsdf></test>
+  <test type="ttest"><string name="references" value="1"/>
+    <scene><camera type="orthographic"/><integrator type="av"><float name="length" value="1"/></integrator>
+      <mesh type="sphere"><bsdf type="roughdielectric"/></mesh><emitter type="constant">
+      <color name="radiance" value="1,1,1"/></emitter></scene></test>
+  <test type="chi2test"><integer name="resolution" value="8"/><bsdf type="dielectric"/></test>
+</scene>"#;
+
+/// Scene files; their meshes become the one that is there.
+pub fn nori_xml() -> Vec<Vec<u8>> {
+    let small = |text: &str| {
+        let parts: Vec<&str> = text.split("value=\"meshes/").collect();
+        let rest = parts[1..].iter().map(|part| part.split_once(".obj").map_or(*part, |(_, rest)| rest));
+        std::iter::once(parts[0].to_owned()).chain(rest.map(|r| format!("value=\"tri.obj{r}"))).collect()
+    };
+    let gallery = GALLERY.iter().map(|text| -> String { small(text) });
+    gallery.chain([FEATURES.to_owned(), TESTS.to_owned()]).map(String::into_bytes).collect()
+}
+
+/// Meshes.
+pub fn obj() -> Vec<Vec<u8>> {
+    let gallery = [
+        include_str!("../../../scenes/cornell/meshes/white.obj"),
+        include_str!("../../../scenes/gap/meshes/door.obj"),
+        include_str!("../../../scenes/long-way/meshes/shaft.obj"),
+    ];
+    let star = "v 0 3 0\nv -2 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\n";
+    gallery.into_iter().chain([TRIANGLE, MESH, star]).map(|text| text.as_bytes().to_vec()).collect()
+}
+
+/// Rendered pictures: a whole one, a crop, and one of a single pixel.
+pub fn exr() -> Vec<Vec<u8>> {
+    let windows = [[0, 0, 8, 6], [3, 2, 4, 3], [0, 0, 1, 1]];
+    windows.iter().map(|window| film([8, 6], *window)).collect()
+}
+
+fn film([width, height]: [u32; 2], [x, y, w, h]: [u32; 4]) -> Vec<u8> {
+    let ramp = |step: f32| (0..w * h).map(|i| Rgb::splat(i as f32 * step)).collect();
+    let picture = Picture {
+        width,
+        height,
+        window: Window { x, y, width: w, height: h },
+        eye_samples: 4,
+        light_samples: 4,
+        eye: ramp(0.25),
+        light: ramp(0.5),
+        error: None,
+    };
+    let mut facts = Metadata::new();
+    facts.set("seed", 7);
+    let path = folder().path().join("seed.exr");
+    caustica_film::write_exr(&path, &picture, LightImage::On, &facts).expect("a small picture");
+    std::fs::read(path).expect("a small picture")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_seed_is_good() {
+        let folder = tempfile::tempdir().unwrap();
+        for seed in super::obj() {
+            caustica_import::read_obj(&seed[..], "m.obj").unwrap();
+        }
+        for seed in super::exr() {
+            let path = folder.path().join("f.exr");
+            std::fs::write(&path, seed).unwrap();
+            caustica_film::read_exr(&path).unwrap();
+        }
+        std::fs::write(folder.path().join("tri.obj"), super::TRIANGLE).unwrap();
+        for (name, bytes) in crate::images::named() {
+            std::fs::write(folder.path().join(name), bytes).unwrap();
+        }
+        for seed in super::nori_xml() {
+            let text = String::from_utf8(seed).unwrap();
+            let loaded = caustica_import::parse_nori(&text, "s.xml", folder.path());
+            loaded.unwrap_or_else(|e| panic!("{e}\n{text}"));
+        }
+    }
+}
