@@ -9,7 +9,7 @@ pub struct Dice(u64);
 impl Dice {
     /// The stream of that seed.
     pub fn new(seed: u64) -> Self {
-        Self(mix64(seed ^ 0x5eed_0f_d1ce))
+        Self(mix64(seed))
     }
 
     /// 64 random bits.

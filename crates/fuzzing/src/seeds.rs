@@ -36,7 +36,8 @@ const FEATURES: &str = r#"<?xml version="1.0"?>
     <rfilter type="mitchell"><float name="B" value=".5"/></rfilter>
   </camera>
   <mesh type="sphere"><point name="center" value="1 2 3"/><float name="radius" value="0.5"/>
-    <bsdf type="diffuse"><texture type="checkerboard_color" name="albedo"><vector name="scale" value=".1 .1"/></texture></bsdf>
+    <bsdf type="diffuse"><texture type="checkerboard_color" name="albedo">
+      <vector name="scale" value=".1 .1"/></texture></bsdf>
     <emitter type="area"><color name="radiance" value="10, 20.5, 3e1"/></emitter></mesh>
   <mesh type="obj"><string name="filename" value="tri.obj"/>
     <transform name="toWorld"><scale value="2,2,-2"/><translate value="0,0,5"/></transform>
