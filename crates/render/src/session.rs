@@ -228,7 +228,7 @@ impl<'a> Session<'a> {
         &self,
         budget: Budget,
         control: &Control,
-        progress: impl FnMut(&Progress),
+        mut progress: impl FnMut(&Progress),
     ) -> Result<Report, RenderError> {
         let start = Instant::now();
         let window = self.film.layout().window;
@@ -238,7 +238,8 @@ impl<'a> Session<'a> {
         let (first, done) = (u64::from(self.options.first_sample), self.samples());
         let workers =
             Workers { window, start: first, done, budget: self.within_reach(budget), threads, control };
-        let added = workers.run(|units| self.work(units, buffered), progress)?;
+        let asked = |p: &Progress| progress(&Progress { total: budget.samples, ..*p });
+        let added = workers.run(|units| self.work(units, buffered), asked)?;
         let (eye, light) =
             (self.options.settings.integrator != Integrator::Light, self.kernel.has_light_image());
         self.film.finish_passes(first + done..first + done + added, eye, light);
@@ -248,11 +249,11 @@ impl<'a> Session<'a> {
 
     /// For how long the options say.
     pub(crate) fn budget(&self) -> Budget {
-        self.within_reach(self.options.budget())
+        self.options.budget()
     }
 
     /// No more samples than there are numbers for, nor than a film holds.
-    fn within_reach(&self, budget: Budget) -> Budget {
+    pub(crate) fn within_reach(&self, budget: Budget) -> Budget {
         let most = (u32::MAX - self.options.first_sample).min(MOST_SAMPLES as u32);
         Budget { samples: budget.samples.min(most), ..budget }
     }

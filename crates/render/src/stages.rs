@@ -47,7 +47,8 @@ impl Session<'_> {
         control: &Control,
         (mut progress, mut save): (impl FnMut(&Progress), impl FnMut(&Report)),
     ) -> Result<Report, RenderError> {
-        let (whole, start) = (self.budget(), Instant::now());
+        let (asked, start) = (self.budget(), Instant::now());
+        let whole = self.within_reach(asked);
         let (before, mut saved) = (self.samples(), start);
         loop {
             let done = self.samples();
@@ -62,7 +63,7 @@ impl Session<'_> {
             let left = whole.time.map(|t| until(start, t));
             let time = left.into_iter().chain(stages.every.map(|t| until(saved, t))).min();
             let report = self.run_for(Budget { samples, time }, control, |p| {
-                progress(&overall(p, start.elapsed(), whole));
+                progress(&overall(p, start.elapsed(), asked));
             })?;
             let report = self.total(report, start.elapsed(), before);
             let quiet = report.samples >= look && stages.noise.is_some_and(|most| self.is_quiet(most));

@@ -182,6 +182,7 @@ mod tests {
     use std::path::Path;
 
     use caustica_math::Transform;
+    use caustica_scene::MemoryLimit;
     use caustica_scene::description::Shape;
 
     use super::*;
@@ -192,8 +193,12 @@ mod tests {
     fn triangles_are_counted_wherever_they_are_named() {
         let source = Source::new("s.xml", "<scene/>");
         let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-        let folder =
-            Folder { base: Path::new(""), embedded: &[("a", text), ("b", text)], trust: Trust::OwnFolder };
+        let folder = Folder {
+            base: Path::new(""),
+            embedded: &[("a", text), ("b", text)],
+            memory: MemoryLimit::Machine,
+            trust: Trust::OwnFolder,
+        };
         for names in [["a", "a", "a"], ["a", "b", "a"], ["a", "a", "b"]] {
             let mut warnings = Warnings::default();
             let mut cx = Context::new(Place { source: &source }, folder, &mut warnings);
