@@ -71,7 +71,7 @@ pub fn open_shrunk(
     side: Option<u32>,
     console: &mut Console,
 ) -> Result<(Scene, Vec<String>), Failure> {
-    let mut description = description(source.scene.as_deref(), console)?;
+    let mut description = description(source.scene.as_deref(), trust(source.untrusted), console)?;
     override_film(&mut description, source, console)?;
     if let Some(side) = side {
         caustica_verify::shrink(&mut description.film, side);

@@ -52,6 +52,13 @@ pub const TARGETS: &[Target] = &[
         words: words::IMAGES,
     },
     Target { name: "exr", run: readers::exr, seeds: seeds::exr, mutate: mutate::binary, words: words::EXR },
+    Target {
+        name: "film",
+        run: readers::film,
+        seeds: seeds::films,
+        mutate: mutate::binary,
+        words: words::FILM,
+    },
     Target { name: "scenes", run: scenes::scenes, seeds: scenes::seeds, mutate: mutate::binary, words: &[] },
 ];
 

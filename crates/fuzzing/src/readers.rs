@@ -1,5 +1,6 @@
 //! Files that people hand us.
 
+use caustica_film::FilmRecord;
 use std::sync::LazyLock;
 
 use caustica_import::{Loaded, TestKind, Trust, decode_image, parse_nori_with, read_obj};
@@ -111,5 +112,18 @@ pub fn exr(data: &[u8]) {
         assert_eq!(picture.light.len() as u64, pixels);
         assert!(picture.window.x + picture.window.width <= picture.width);
         assert!(picture.window.y + picture.window.height <= picture.height);
+    }
+}
+
+/// Reads a film file, and writes it again.
+pub fn film(data: &[u8]) {
+    if let Ok(record) = FilmRecord::parse(data) {
+        assert_eq!(record.film.sums().len() as u64, record.film.layout().window.pixels());
+        assert!(record.check_mergeable(&record).is_err() || record.facts.samples.total() == 0);
+        let path = folder().path().join("again.film");
+        record.write(&path).expect("a temporary file");
+        let again = FilmRecord::read(&path).expect("a film that was just written");
+        assert!(again.film.bits_equal(&record.film));
+        assert_eq!(again.facts, record.facts);
     }
 }

@@ -5,13 +5,19 @@ use caustica_render::{Control, INTEGRATOR_NAMES, RenderOptions, Session, integra
 use caustica_scene::Scene;
 use caustica_testkit::random_scene::{Choices, bytes_of_seed, random_scene};
 use caustica_transport::{Heuristic, Settings};
+use caustica_verify as verify;
 
 /// Samples a pixel of every render: as many units of work, so that two threads share them.
 const SAMPLES: u32 = 3;
 
-/// What must hold of every scene under every setting. What else is known of any scene, such as the agreement of
-/// integrators, is added here.
-const CHECKS: &[fn(&Scene, &Settings)] = &[renders_soundly];
+/// Samples a pixel of the renders that must agree.
+const SAMPLES_TO_AGREE: u32 = 16;
+
+/// The probability that a scene is told to be rendered wrongly although it is not: there are thousands of them.
+const FALSE_ALARM: f64 = 1e-7;
+
+/// What must hold of every scene under every setting.
+const CHECKS: &[fn(&Scene, &Settings)] = &[renders_soundly, integrators_agree];
 
 /// Builds a scene out of the bytes and checks all that is known of it.
 ///
@@ -42,6 +48,23 @@ fn settings(choices: &mut Choices) -> Settings {
         exhaustive_weights: choices.once_in(8),
         strategies: choices.pick(&sets).parse().expect("a set of strategies"),
         ..Settings::default()
+    }
+}
+
+/// All integrators and strategies find the same light, as far as they reach it.
+fn integrators_agree(scene: &Scene, settings: &Settings) {
+    let options = verify::Options {
+        settings: settings.clone(),
+        samples: SAMPLES_TO_AGREE,
+        significance: FALSE_ALARM,
+        threads: Some(2),
+        ..verify::Options::default()
+    };
+    let outcome = verify::verify(scene, &options, &Control::default(), |_| {});
+    let outcome = outcome.unwrap_or_else(|e| panic!("{e}"));
+    for tested in outcome.tested {
+        let (name, p) = (&tested.estimator.name, tested.smallest_p());
+        assert!(tested.verdict != verify::Verdict::Mismatch, "{name} differs: p = {p:.1e}");
     }
 }
 

@@ -1,6 +1,8 @@
 //! Where inputs start from.
 
-use caustica_film::{LightImage, Metadata, Picture, Window};
+use caustica_film::{
+    DualFilm, FilmFacts, FilmLayout, LightImage, Metadata, Picture, Provenance, Window, write_film,
+};
 use caustica_math::Rgb;
 
 use crate::folder;
@@ -106,6 +108,30 @@ fn film([width, height]: [u32; 2], [x, y, w, h]: [u32; 4]) -> Vec<u8> {
     std::fs::read(path).expect("a small picture")
 }
 
+/// Film files; the last is larger than a chunk of them.
+pub fn films() -> Vec<Vec<u8>> {
+    let path = folder().path().join("seed.film");
+    [[8, 6], [1, 1], [300, 220]]
+        .into_iter()
+        .map(|[width, height]| {
+            let window = Window { x: 0, y: 0, width, height };
+            let film = DualFilm::new(FilmLayout { width, height, window, quantum_exponent: -20 });
+            let film = film.expect("a small film");
+            for pass in 0..3 {
+                (0..width * height).for_each(|i| {
+                    film.half(pass).add_eye([i % width, i / width], Rgb::splat(i as f32));
+                });
+            }
+            film.finish_passes(0..3, true, true);
+            let settings = [("seed".to_owned(), "3".to_owned())].into();
+            let provenance = Provenance { scene: "s.xml".into(), scene_hash: "ab".into(), settings };
+            let facts = FilmFacts { provenance, samples: (0..3).into(), seconds: 1.5 };
+            write_film(&path, &film, &facts).expect("a temporary file");
+            std::fs::read(&path).expect("a film that was just written")
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     #[test]
@@ -118,6 +144,9 @@ mod tests {
             let path = folder.path().join("f.exr");
             std::fs::write(&path, seed).unwrap();
             caustica_film::read_exr(&path).unwrap();
+        }
+        for seed in super::films() {
+            caustica_film::FilmRecord::parse(&seed).unwrap();
         }
         std::fs::write(folder.path().join("tri.obj"), super::TRIANGLE).unwrap();
         for (name, bytes) in crate::images::named() {

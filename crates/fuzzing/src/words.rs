@@ -322,3 +322,20 @@ pub const EXR: &[&str] = &[
     "18446744073709551615",
     "-1",
 ];
+
+/// Words of film files.
+pub const FILM: &[&str] = &[
+    "caustica film 1\n",
+    "\"width\":",
+    "\"height\":",
+    "\"window\":{\"x\":0,\"y\":0,\"width\":1,\"height\":1}",
+    "\"quantum_exponent\":-20",
+    "\"counts\":[{\"eye_samples\":2,\"light_samples\":2,\"invalid\":0,\"clamped\":0}",
+    "\"samples\":[{\"start\":0,\"end\":3}]",
+    "4294967296",
+    "1e308",
+    "\"seconds\":",
+    "\"provenance\":",
+    "\"scene_hash\":",
+    "\"settings\":{}",
+];

@@ -54,6 +54,11 @@ fn nori_xml() {
 }
 
 #[test]
+fn film() {
+    short("film", 40_000);
+}
+
+#[test]
 fn obj() {
     short("obj", 40_000);
 }
