@@ -16,9 +16,6 @@ const SAMPLES_TO_AGREE: u32 = 16;
 /// The probability that a scene is told to be rendered wrongly although it is not: there are thousands of them.
 const FALSE_ALARM: f64 = 1e-7;
 
-/// What must hold of every scene under every setting.
-const CHECKS: &[fn(&Scene, &Settings)] = &[renders_soundly, integrators_agree];
-
 /// Builds a scene out of the bytes and checks all that is known of it.
 ///
 /// # Panics
@@ -27,8 +24,13 @@ pub fn scenes(data: &[u8]) {
     let mut choices = Choices::new(data);
     let settings = settings(&mut choices);
     // Extreme scales may leave a triangle or a camera without a normal, which is an error with words.
-    let Ok((scene, _)) = Scene::new(random_scene(&mut choices)) else { return };
-    CHECKS.iter().for_each(|check| check(&scene, &settings));
+    let Ok((scene, warnings)) = Scene::new(random_scene(&mut choices)) else { return };
+    renders_soundly(&scene, &settings);
+    // Of a lamp in the plane of another surface it is left to rounding who finds it.
+    if is_moderate(&scene) && !warnings.iter().any(|w| w.message.contains("in the plane of another surface"))
+    {
+        integrators_agree(&scene, &settings);
+    }
 }
 
 /// Inputs to start from.
@@ -49,6 +51,17 @@ fn settings(choices: &mut Choices) -> Settings {
         strategies: choices.pick(&sets).parse().expect("a set of strategies"),
         ..Settings::default()
     }
+}
+
+/// Whether no product of a few quantities of the scene leaves the range of an `f32`: otherwise contributions may be no
+/// numbers, and are counted.
+fn is_moderate(scene: &Scene) -> bool {
+    let ((_, radius), power) = (scene.bounding_sphere(), scene.lamps().power());
+    let extreme_filter = match scene.film.filter {
+        Filter::Mitchell { b, c, .. } => b.abs().max(c.abs()) > 10.0,
+        _ => false,
+    };
+    (1e-4..1e4).contains(&radius) && power < 1e12 && !extreme_filter
 }
 
 /// All integrators and strategies find the same light, as far as they reach it.
@@ -89,7 +102,9 @@ fn renders_soundly(scene: &Scene, settings: &Settings) {
         };
         let (one, two) = (render(1), render(2));
         assert!(one.film().bits_equal(two.film()), "{name}: one thread and two differ");
-        assert_eq!(one.film().counts().invalid, 0, "{name}: contributions that are no numbers");
+        if is_moderate(scene) {
+            assert_eq!(one.film().counts().invalid, 0, "{name}: contributions that are no numbers");
+        }
         let picture = one.film().develop();
         let may_be_negative = matches!(scene.film.filter, Filter::Mitchell { .. });
         for (layer, pixels) in [("eye", &picture.eye), ("light", &picture.light)] {
