@@ -76,8 +76,11 @@ impl Arguments {
 /// What is rendered, and on what.
 #[derive(Debug, Args)]
 pub struct Source {
-    /// Nori scene file; without it, the built-in scene of caustics is rendered
+    /// Scene file of Nori or Mitsuba; without it, the built-in scene of caustics is rendered
     pub scene: Option<PathBuf>,
+    /// Give a variable of a Mitsuba scene a value; may be repeated
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
+    pub definitions: Vec<(String, String)>,
     /// Size of the picture, such as 640x480 [default: as the scene says]
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<(u32, u32)>,
@@ -405,6 +408,16 @@ pub struct Sampling {
 }
 
 impl Sampling {
+    /// The same with what the scene asks for where nothing else is said.
+    #[must_use]
+    pub fn or(&self, depths: Depths) -> Self {
+        Self {
+            max_depth: self.max_depth.or(depths.max_depth),
+            roulette_depth: self.roulette_depth.or(depths.roulette_start),
+            ..*self
+        }
+    }
+
     /// The settings of an integrator that is sampled so, with all strategies.
     pub fn settings(&self, integrator: Integrator) -> Settings {
         Settings {
@@ -470,8 +483,11 @@ pub struct Develop {
 
 #[derive(Debug, Args)]
 pub struct Info {
-    /// Nori scene file or film; without it, the built-in scene
+    /// Scene file of Nori or Mitsuba, or film; without it, the built-in scene
     pub scene: Option<PathBuf>,
+    /// Give a variable of a Mitsuba scene a value; may be repeated
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
+    pub definitions: Vec<(String, String)>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -639,6 +655,13 @@ fn parse_resolution(text: &str) -> Result<(u32, u32), String> {
 fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
     let parts: Vec<u32> = text.split(',').map(|p| p.trim().parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
+}
+
+fn parse_definition(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("use NAME=VALUE, such as spp=64".into()),
+    }
 }
 
 fn parse_crop(text: &str) -> Result<Crop, String> {

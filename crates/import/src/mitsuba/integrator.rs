@@ -33,7 +33,10 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     }
     cx.description.integrator = match plugin {
         "path" => USUAL,
-        "direct" => direct(&mut fields)?,
+        "direct" => {
+            cx.max_depth = Some(2);
+            direct(&mut fields)?
+        }
         "ptracer" => Integrator::Light,
         "bdpt" => Integrator::Bdpt,
         "depth" => Integrator::Depth,
