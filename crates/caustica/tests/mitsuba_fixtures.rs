@@ -5,8 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::import::load;
 use caustica::description::{Image, Integrator, LightKind};
+use caustica::import::load;
 use caustica::{Description, RenderOptions, Rgb, Scene, Session, Settings};
 
 const SEEDS: u64 = 32;
@@ -99,7 +99,8 @@ fn compare(images: &[Vec<[f64; 3]>], reference: &Picture, variance: &Picture) ->
     for i in 0..pixels {
         for c in 0..3 {
             let m = mean(i, c);
-            let own = images.iter().map(|image| (image[i][c] - m) * (image[i][c] - m)).sum::<f64>() / (k - 1.0);
+            let own =
+                images.iter().map(|image| (image[i][c] - m) * (image[i][c] - m)).sum::<f64>() / (k - 1.0);
             let theirs = variance.pixels[i][c].max(VARIANCE_FLOOR) / REFERENCE_SAMPLES;
             let z = (m - reference.pixels[i][c]).abs() / (own / k + theirs).sqrt();
             passed += usize::from(libm::erfc(z / std::f64::consts::SQRT_2) > alpha);

@@ -12,6 +12,8 @@ use caustica_clips::Layout;
 use caustica_compare::{DEFAULT_METHODS, EYE_ONLY};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::loading::Depths;
+
 /// A bidirectional path tracer for scenes whose light is hard to find.
 #[derive(Debug, Parser)]
 #[command(name = "caustica", version, after_help = EXIT_CODES)]
@@ -74,7 +76,7 @@ impl Arguments {
 }
 
 /// What is rendered, and on what.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Source {
     /// Scene file of Nori or Mitsuba; without it, the built-in scene of caustics is rendered
     pub scene: Option<PathBuf>,
@@ -96,7 +98,7 @@ pub struct Source {
 }
 
 /// For how long to render.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Length {
     /// Samples per pixel [default: as the scene says, or without limit if --time is given]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -124,7 +126,7 @@ pub struct Voice {
     pub json: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Render {
     #[command(flatten)]
     pub source: Source,
@@ -160,7 +162,7 @@ pub struct Render {
 }
 
 /// How a long render is kept safe.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Checkpoint {
     /// Keep what is rendered so far in this file, which ends in .film and is replaced whole or not at all
     #[arg(long = "checkpoint", value_name = "FILE")]
@@ -173,7 +175,7 @@ pub struct Checkpoint {
     pub resume: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Merge {
     /// Films of the same scene and settings, of different samples
     #[arg(required = true, value_name = "FILM")]
@@ -185,7 +187,7 @@ pub struct Merge {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Compare {
     #[command(flatten)]
     pub source: Source,
@@ -214,7 +216,7 @@ pub struct Compare {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Pyramid {
     #[command(flatten)]
     pub source: Source,
@@ -235,7 +237,7 @@ pub struct Pyramid {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Verify {
     #[command(flatten)]
     pub source: Source,
@@ -257,7 +259,7 @@ pub struct Verify {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Explain {
     #[command(flatten)]
     pub source: Source,
@@ -299,7 +301,7 @@ impl Video {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Converge {
     #[command(flatten)]
     pub clip: Clip,
@@ -315,7 +317,7 @@ pub struct Converge {
     pub method: Method,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct PyramidVideo {
     #[command(flatten)]
     pub clip: Clip,
@@ -332,7 +334,7 @@ pub struct PyramidVideo {
     pub sampling: Sampling,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct OrbitVideo {
     #[command(flatten)]
     pub clip: Clip,
@@ -350,7 +352,7 @@ pub struct OrbitVideo {
 }
 
 /// What all videos have.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Clip {
     #[command(flatten)]
     pub source: Source,
@@ -373,7 +375,7 @@ pub struct Clip {
 }
 
 /// How light is found.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Method {
     /// Integrator
     #[arg(long, value_name = "NAME", value_parser = integrator_names(), hide_possible_values = true,
@@ -388,7 +390,7 @@ pub struct Method {
 }
 
 /// How paths are sampled and weighed.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Sampling {
     /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -467,7 +469,7 @@ impl Look {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Develop {
     /// Film, or OpenEXR file with an eye and a light image, as `caustica render` writes them
     pub film: PathBuf,
@@ -481,7 +483,7 @@ pub struct Develop {
     pub look: Look,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Info {
     /// Scene file of Nori or Mitsuba, or film; without it, the built-in scene
     pub scene: Option<PathBuf>,
@@ -493,7 +495,7 @@ pub struct Info {
     pub json: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Test {
     /// Nori scene file with tests
     pub scene: PathBuf,

@@ -19,7 +19,7 @@ pub fn run(args: &Info, console: &mut Console) -> Result<ExitCode, Failure> {
     if let Some(film) = args.scene.as_deref().filter(|path| is_film_file(path)) {
         return film_info(film, console);
     }
-    let description = loading::description(args.scene.as_deref(), console)?;
+    let (description, _) = loading::description(args.scene.as_deref(), &args.definitions, console)?;
     let outline = outline(&description);
     let scene = loading::scene(description, TreeQuality::default(), console)?;
     let info = describe(&scene, outline);

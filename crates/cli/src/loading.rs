@@ -2,6 +2,7 @@ use std::path::{Path, PathBuf};
 
 use caustica::description::{Camera, Integrator};
 use caustica::scene::Diagnostic;
+use caustica::scene::MemoryLimit;
 use caustica::scene::bvh::TreeQuality;
 use caustica::{Description, Scene, default_scene, import};
 
@@ -9,16 +10,35 @@ use crate::args::Source;
 use crate::console::Console;
 use crate::failure::Failure;
 
-/// The scene of that file, or the built-in one.
-pub fn description(path: Option<&Path>, console: &mut Console) -> Result<Description, Failure> {
-    let Some(path) = path else { return Ok(default_scene::description()) };
-    let loaded = import::load(path)?;
+/// How long paths are, as a scene asks for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Depths {
+    /// Most edges of a path.
+    pub max_depth: Option<u32>,
+    /// Bounces before roulette.
+    pub roulette_start: Option<u32>,
+}
+
+/// The scene of that file, with values for its variables, or the built-in one.
+pub fn description(
+    path: Option<&Path>,
+    variables: &[(String, String)],
+    console: &mut Console,
+) -> Result<(Description, Depths), Failure> {
+    let Some(path) = path else {
+        return match variables {
+            [] => Ok((default_scene::description(), Depths::default())),
+            _ => Err(Failure::Usage("the built-in scene has no variables".into())),
+        };
+    };
+    let loaded = import::load_with(path, MemoryLimit::Machine, variables)?;
     console.warn(loaded.warnings);
-    loaded.scene.ok_or_else(|| {
+    let depths = Depths { max_depth: loaded.max_depth, roulette_start: loaded.roulette_start };
+    let description = loaded.scene.ok_or_else(|| {
         Diagnostic::error(format!("`{}` carries tests but no scene", path.display()))
             .hint("run it with `caustica test`")
-            .into()
-    })
+    })?;
+    Ok((description, depths))
 }
 
 /// The description made ready.
@@ -35,6 +55,8 @@ pub struct Opened {
     pub integrator: Integrator,
     /// Samples per pixel that it asks for.
     pub samples: u32,
+    /// How long paths are that it asks for.
+    pub depths: Depths,
     /// Its camera.
     pub camera: Camera,
 }
@@ -50,28 +72,28 @@ pub fn open_with<T>(
     console: &mut Console,
     look: impl FnOnce(&mut Description) -> T,
 ) -> Result<(Opened, T), Failure> {
-    let mut description = description(source.scene.as_deref(), console)?;
+    let (mut description, depths) = description(source.scene.as_deref(), &source.definitions, console)?;
     override_film(&mut description, source, console)?;
     let seen = look(&mut description);
     let (integrator, samples) = (description.integrator, description.samples.max(1));
     let camera = description.camera.clone();
     let scene = scene(description, source.tree.into(), console)?;
-    Ok((Opened { scene, integrator, samples, camera }, seen))
+    Ok((Opened { scene, integrator, samples, depths, camera }, seen))
 }
 
-/// Loads a scene to be looked into, its picture made smaller if a longest side is given.
+/// Loads a scene to be looked into, its picture made smaller if a longest side is given; and the names of its shapes.
 pub fn open_shrunk(
     source: &Source,
     side: Option<u32>,
     console: &mut Console,
-) -> Result<(Scene, Vec<String>), Failure> {
-    let mut description = description(source.scene.as_deref(), console)?;
+) -> Result<(Scene, Vec<String>, Depths), Failure> {
+    let (mut description, depths) = description(source.scene.as_deref(), &source.definitions, console)?;
     override_film(&mut description, source, console)?;
     if let Some(side) = side {
         caustica_verify::shrink(&mut description.film, side);
     }
     let names = description.shapes.iter().map(|s| s.name.clone()).collect();
-    Ok((scene(description, source.tree.into(), console)?, names))
+    Ok((scene(description, source.tree.into(), console)?, names, depths))
 }
 
 /// `--resolution` and `--crop`.

@@ -38,7 +38,8 @@ const SHOWN_DIFFUSE: &[(&str, &str)] = &[
 ];
 
 /// What changes another material and is left out so far, so that the inner one is shown.
-const WRAPPERS: &[&str] = &["mask", "bumpmap", "normalmap", "bump", "blendbsdf", "mixturebsdf", "coating", "roughcoating"];
+const WRAPPERS: &[&str] =
+    &["mask", "bumpmap", "normalmap", "bump", "blendbsdf", "mixturebsdf", "coating", "roughcoating"];
 
 /// The material of an object, read once.
 pub(super) fn read(index: usize, cx: &mut Context) -> Result<MaterialId, Diagnostic> {
@@ -75,7 +76,17 @@ fn inner(fields: &mut Fields, cx: &mut Context) -> Result<Option<MaterialId>, Di
         for (child, _) in fields.children(Class::Texture) {
             let _ = child;
         }
-        fields.ignore(&["opacity", "scale", "weight", "weights", "thickness", "int_ior", "ext_ior", "alpha", "distribution"]);
+        fields.ignore(&[
+            "opacity",
+            "scale",
+            "weight",
+            "weights",
+            "thickness",
+            "int_ior",
+            "ext_ior",
+            "alpha",
+            "distribution",
+        ]);
         fields.texture("opacity");
         fields.texture("weight");
         fields.warn(format!("the {title} is not supported yet; shown as the bsdf inside of it"));
@@ -176,7 +187,8 @@ fn alpha(fields: &mut Fields, cx: &mut Context) -> Result<f32, Diagnostic> {
         (None, None, None) => Ok(0.1),
         (None, Some(u), Some(v)) if u == v => Ok(u),
         (None, Some(u), Some(v)) => {
-            fields.warn("roughness that depends on the direction is not supported yet; it is √(αᵤ·αᵥ) in all");
+            fields
+                .warn("roughness that depends on the direction is not supported yet; it is √(αᵤ·αᵥ) in all");
             Ok((u * v).sqrt())
         }
         _ => Err(fields.error("give `alpha`, or both `alpha_u` and `alpha_v`")),

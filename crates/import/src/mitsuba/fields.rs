@@ -105,7 +105,8 @@ impl<'t> Fields<'t> {
             let origin = self.find(name).map(|p| p.origin.clone());
             let child = self.take(|child, _| child.name.as_deref() == Some(*name)).first().map(|c| c.0);
             if let Some(origin) = origin.or(child.map(|c| c.origin.clone())) {
-                let message = format!("`{name}` of the {} is not supported yet; it is left out", self.title());
+                let message =
+                    format!("`{name}` of the {} is not supported yet; it is left out", self.title());
                 self.warn_at(message, &origin);
             }
         }
@@ -248,7 +249,9 @@ impl<'t> Fields<'t> {
             Value::Spectrum(curve) => {
                 let (color, clipped) = curve.rgb(role);
                 if clipped {
-                    let message = format!("the spectrum `{name}` is outside of what red, green and blue can show; it is clipped");
+                    let message = format!(
+                        "the spectrum `{name}` is outside of what red, green and blue can show; it is clipped"
+                    );
                     self.warn_at(message, &property.value_origin);
                 }
                 color

@@ -15,9 +15,27 @@ const INTEGRATORS: &[&str] =
 
 /// What has no counterpart, and is close enough to path tracing.
 const SHOWN_PATH: &[&str] = &[
-    "volpath", "volpathmis", "volpath_simple", "prb", "prb_basic", "prb_projective", "prbvolpath",
-    "direct_projective", "direct_reparam", "prb_reparam", "stokes", "photonmapper", "ppm", "sppm", "vpl", "pssmlt",
-    "mlt", "erpt", "adaptive", "irrcache", "multichannel",
+    "volpath",
+    "volpathmis",
+    "volpath_simple",
+    "prb",
+    "prb_basic",
+    "prb_projective",
+    "prbvolpath",
+    "direct_projective",
+    "direct_reparam",
+    "prb_reparam",
+    "stokes",
+    "photonmapper",
+    "ppm",
+    "sppm",
+    "vpl",
+    "pssmlt",
+    "mlt",
+    "erpt",
+    "adaptive",
+    "irrcache",
+    "multichannel",
 ];
 
 pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
@@ -51,7 +69,14 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
         fields.warn("`hide_emitters` is not supported yet; lamps are seen");
     }
     // How much is done at a time, by which strategies of their own.
-    fields.ignore(&["samples_per_pass", "block_size", "timeout", "light_image", "sample_direct", "strict_normals"]);
+    fields.ignore(&[
+        "samples_per_pass",
+        "block_size",
+        "timeout",
+        "light_image",
+        "sample_direct",
+        "strict_normals",
+    ]);
     if plugin != "direct" && SHOWN_PATH.contains(&plugin) {
         fields.take_rest();
     }

@@ -45,11 +45,7 @@ const OTHER_METALS: &[&str] = &[
 ];
 
 /// An index of refraction, by number or name.
-pub(super) fn index(
-    fields: &mut Fields,
-    name: &'static str,
-    default: &str,
-) -> Result<f32, Diagnostic> {
+pub(super) fn index(fields: &mut Fields, name: &'static str, default: &str) -> Result<f32, Diagnostic> {
     let known = |text: &str| {
         let text = text.to_ascii_lowercase();
         NAMES.iter().find(|(name, _)| *name == text).map(|(_, ior)| *ior)

@@ -121,7 +121,13 @@ impl<'p> Parser<'p> {
         Ok(())
     }
 
-    fn child(&mut self, file: &File, node: Node, level: Level, parent: &mut Object) -> Result<(), Diagnostic> {
+    fn child(
+        &mut self,
+        file: &File,
+        node: Node,
+        level: Level,
+        parent: &mut Object,
+    ) -> Result<(), Diagnostic> {
         let name = self.name(file, node)?;
         let index = self.object(file, node, Level { tags: level.tags + 1, ..level })?;
         let origin = file.origin(tag_range(node));
@@ -218,7 +224,11 @@ impl<'p> Parser<'p> {
     fn reference(&mut self, file: &File, node: Node) -> Result<Child, Diagnostic> {
         file.check_leaf(node, &["id", "name"])?;
         let id = file.attribute(node, "id", &mut self.variables)?;
-        Ok(Child { name: self.name(file, node)?, target: Target::Id(id.value), origin: file.origin(id.range) })
+        Ok(Child {
+            name: self.name(file, node)?,
+            target: Target::Id(id.value),
+            origin: file.origin(id.range),
+        })
     }
 
     /// Reads another file: what is in its scene, or the one object that it is.

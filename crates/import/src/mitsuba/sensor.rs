@@ -109,7 +109,12 @@ fn field_of_view(fields: &mut Fields, aspect: f32) -> Result<f32, Diagnostic> {
 }
 
 fn usual_film() -> FilmSettings {
-    FilmSettings { width: 768, height: 576, crop: None, filter: Filter::Gaussian { radius: 2.0, stddev: 0.5 } }
+    FilmSettings {
+        width: 768,
+        height: 576,
+        crop: None,
+        filter: Filter::Gaussian { radius: 2.0, stddev: 0.5 },
+    }
 }
 
 fn read_film(index: usize, cx: &mut Context) -> Result<FilmSettings, Diagnostic> {
@@ -130,8 +135,18 @@ fn read_film(index: usize, cx: &mut Context) -> Result<FilmSettings, Diagnostic>
     check(&film).map_err(|message| fields.error(message))?;
     // How files are written is said by the command line.
     fields.ignore(&[
-        "file_format", "pixel_format", "component_format", "banner", "high_quality_edges", "sample_border",
-        "compensate", "attach_log", "channel_names", "variable", "digits", "tonemap_method",
+        "file_format",
+        "pixel_format",
+        "component_format",
+        "banner",
+        "high_quality_edges",
+        "sample_border",
+        "compensate",
+        "attach_log",
+        "channel_names",
+        "variable",
+        "digits",
+        "tonemap_method",
     ]);
     fields.unsupported(&["gamma", "exposure", "key", "burn"]);
     fields.finish(cx);

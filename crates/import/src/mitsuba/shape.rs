@@ -14,8 +14,17 @@ use crate::nori::range::Bounds;
 
 const SHAPES: &[&str] = &["obj", "ply", "sphere", "rectangle", "disk", "cube", "cylinder"];
 const UNSUPPORTED: &[&str] = &[
-    "serialized", "shapegroup", "instance", "linearcurve", "bsplinecurve", "sdfgrid", "ellipsoids",
-    "ellipsoidsmesh", "hair", "heightfield", "merge",
+    "serialized",
+    "shapegroup",
+    "instance",
+    "linearcurve",
+    "bsplinecurve",
+    "sdfgrid",
+    "ellipsoids",
+    "ellipsoidsmesh",
+    "hair",
+    "heightfield",
+    "merge",
 ];
 
 /// A surface in its own frame, and what moves that into the shape's.
@@ -73,7 +82,8 @@ fn surface(
     (to_world, flipped): (Transform, bool),
     cx: &mut Context,
 ) -> Result<Surface, Diagnostic> {
-    let mesh = |mesh, name: &str, placed| Surface { geometry: Geometry::Mesh(mesh), name: name.into(), placed };
+    let mesh =
+        |mesh, name: &str, placed| Surface { geometry: Geometry::Mesh(mesh), name: name.into(), placed };
     let here = Transform::IDENTITY;
     Ok(match fields.plugin() {
         "obj" => file(fields, Format::Obj, &to_world, cx)?,

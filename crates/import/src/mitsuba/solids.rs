@@ -182,13 +182,9 @@ mod tests {
     #[test]
     fn areas_and_sides() {
         let pi = std::f64::consts::PI;
-        for (mesh, expected) in [
-            (rectangle(), 4.0),
-            (cube(), 24.0),
-            (disk(), pi),
-            (cylinder(), 2.0 * pi),
-            (sphere(), 4.0 * pi),
-        ] {
+        for (mesh, expected) in
+            [(rectangle(), 4.0), (cube(), 24.0), (disk(), pi), (cylinder(), 2.0 * pi), (sphere(), 4.0 * pi)]
+        {
             let (area, agree) = cross_area(&mesh);
             assert!((area / expected - 1.0).abs() < 3e-4 && agree, "{area} {expected} {agree}");
         }
@@ -200,7 +196,11 @@ mod tests {
         let to_world = Transform::scale([2.0, 1.0, -1.0]);
         mesh.normals = smooth_normals(&mesh, &Transform::IDENTITY);
         let off = |mesh: &Mesh| {
-            let inner = mesh.positions.iter().zip(&mesh.normals).filter(|(p, _)| p.z.abs() < 0.99 && p.y.abs() > 0.01);
+            let inner = mesh
+                .positions
+                .iter()
+                .zip(&mesh.normals)
+                .filter(|(p, _)| p.z.abs() < 0.99 && p.y.abs() > 0.01);
             inner.map(|(p, n)| (*p - *n).length()).fold(0.0, f32::max)
         };
         assert!(off(&mesh) < 0.01, "{}", off(&mesh));

@@ -118,7 +118,8 @@ impl Curve {
             Self::Uniform(_) => raw,
             _ => raw.map(|c| c.clamp(0.0, most)),
         };
-        let changed = (0..3).any(|i| (raw[i] - clipped[i]).abs() > 1e-3 * clipped.iter().fold(0.0, |a, b| b.max(a)));
+        let changed =
+            (0..3).any(|i| (raw[i] - clipped[i]).abs() > 1e-3 * clipped.iter().fold(0.0, |a, b| b.max(a)));
         (Rgb(clipped.map(|c| c as f32)), changed)
     }
 
@@ -171,7 +172,8 @@ mod tests {
 
     #[test]
     fn bad_lists() {
-        for (text, range) in [("400:1 300:2", 0..11), ("400:1, 5oo:2", 7..12), ("x", 0..1), ("400:1 2", 6..7)] {
+        for (text, range) in [("400:1 300:2", 0..11), ("400:1, 5oo:2", 7..12), ("x", 0..1), ("400:1 2", 6..7)]
+        {
             assert_eq!(Curve::parse(text).unwrap_err().range, range, "{text}");
         }
         assert!(Curve::parse_file("# a lamp\n400 1\n\n500 2 # end\n").is_ok());

@@ -13,9 +13,8 @@ use super::spectrum::{Curve, Role};
 use super::tree::Value;
 use crate::nori::range::Bounds;
 
-const TEXTURES: &[&str] = &[
-    "bitmap", "checkerboard", "rgb", "srgb", "uniform", "d65", "blackbody", "regular", "irregular",
-];
+const TEXTURES: &[&str] =
+    &["bitmap", "checkerboard", "rgb", "srgb", "uniform", "d65", "blackbody", "regular", "irregular"];
 const UNSUPPORTED: &[&str] = &["mesh_attribute", "volume", "grid", "scale", "wireframe", "curvature"];
 
 /// A colour property, or a texture or spectrum of that name, if either is there.
@@ -109,7 +108,10 @@ fn bitmap(fields: &mut Fields, cx: &mut Context) -> Result<Texture, Diagnostic> 
     if let Some((mode, p)) = fields.choice("wrap_mode", &["repeat", "mirror", "clamp"])?
         && mode != "repeat"
     {
-        fields.warn_at(format!("the wrap mode `{mode}` is not supported yet; the image repeats"), &p.value_origin);
+        fields.warn_at(
+            format!("the wrap mode `{mode}` is not supported yet; the image repeats"),
+            &p.value_origin,
+        );
     }
     if let Some((mode, p)) = fields.choice("filter_type", &["bilinear", "nearest", "trilinear", "ewa"])?
         && mode != "bilinear"
@@ -122,8 +124,7 @@ fn bitmap(fields: &mut Fields, cx: &mut Context) -> Result<Texture, Diagnostic> 
     fields.ignore(&["format", "accel", "cache", "max_anisotropy"]);
     fields.unsupported(&["gamma", "channel"]);
     // The row at v′ = v·scale + offset from the upper edge, by 1 − v.
-    let transform =
-        TextureTransform { scale, offset: [offset[0], 1.0 - scale[1] - offset[1]] };
+    let transform = TextureTransform { scale, offset: [offset[0], 1.0 - scale[1] - offset[1]] };
     Ok(Texture::Image { image, transform })
 }
 

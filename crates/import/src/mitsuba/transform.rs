@@ -81,11 +81,19 @@ fn matrix(text: &str) -> Result<Transform, Bad> {
             m.extend([0.0, 0.0, 0.0, 0.0, 1.0]);
         }
         16 => {}
-        n => return Err(Bad { message: format!("expected 9 or 16 numbers and found {n}"), range: 0..text.len() }),
+        n => {
+            return Err(Bad {
+                message: format!("expected 9 or 16 numbers and found {n}"),
+                range: 0..text.len(),
+            });
+        }
     }
     if m[12..] != [0.0, 0.0, 0.0, 1.0] {
         // Under a projective map neither normals nor distances along rays mean anything.
-        return Err(Bad { message: "the last row of the matrix must be 0 0 0 1".into(), range: 0..text.len() });
+        return Err(Bad {
+            message: "the last row of the matrix must be 0 0 0 1".into(),
+            range: 0..text.len(),
+        });
     }
     let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
     Ok(Transform::from_rows([row(0), row(1), row(2), row(3)]))

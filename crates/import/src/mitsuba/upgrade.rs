@@ -82,7 +82,8 @@ pub(super) fn object(object: &mut Object, version: Version) {
 
 /// Scales and offsets of texture coordinates to one transform.
 fn join_uv(object: &mut Object) {
-    let is_uv = |p: &Property| ["uscale", "vscale", "uoffset", "voffset", "uvscale"].contains(&p.name.as_str());
+    let is_uv =
+        |p: &Property| ["uscale", "vscale", "uoffset", "voffset", "uvscale"].contains(&p.name.as_str());
     let (uv, rest): (Vec<Property>, Vec<Property>) =
         std::mem::take(&mut object.properties).into_iter().partition(is_uv);
     object.properties = rest;

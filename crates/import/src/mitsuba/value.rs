@@ -10,18 +10,8 @@ use crate::nori::value::{Bad, numbers};
 use crate::suggest;
 
 /// Tags of properties other than transforms.
-pub(super) const TAGS: &[&str] = &[
-    "boolean",
-    "integer",
-    "float",
-    "string",
-    "point",
-    "vector",
-    "rgb",
-    "srgb",
-    "spectrum",
-    "blackbody",
-];
+pub(super) const TAGS: &[&str] =
+    &["boolean", "integer", "float", "string", "point", "vector", "rgb", "srgb", "spectrum", "blackbody"];
 
 /// The attributes of a property's tag.
 pub(super) fn attributes(tag: &str) -> &'static [&'static str] {

@@ -167,7 +167,8 @@ fn vertices(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result
 }
 
 fn faces(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<usize, Fault> {
-    let is_corners = |p: &Property| p.list.is_some() && ["vertex_indices", "vertex_index"].contains(&p.name.as_str());
+    let is_corners =
+        |p: &Property| p.list.is_some() && ["vertex_indices", "vertex_index"].contains(&p.name.as_str());
     if !element.properties.iter().any(is_corners) {
         return fault("the faces have no list `vertex_indices`", 1);
     }

@@ -136,9 +136,11 @@ fn parse_encoding(word: &str, line: u32) -> Result<Encoding, Fault> {
 
 fn parse_property(words: &[&str]) -> Option<Property> {
     match *words {
-        ["list", count, kind, name] => {
-            Some(Property { name: name.to_owned(), kind: Kind::parse(kind)?, list: Some(Kind::parse(count)?) })
-        }
+        ["list", count, kind, name] => Some(Property {
+            name: name.to_owned(),
+            kind: Kind::parse(kind)?,
+            list: Some(Kind::parse(count)?),
+        }),
         [kind, name] => Some(Property { name: name.to_owned(), kind: Kind::parse(kind)?, list: None }),
         _ => None,
     }

@@ -43,9 +43,9 @@ pub(crate) fn load(path: &Path, memory: MemoryLimit) -> Result<PlyMesh, Diagnost
     let (file, size) = files::open(path).map_err(unreadable)?;
     drop(file);
     // The mesh takes about as much again as the file; text more than binary.
-    memory.check(size.saturating_mul(2)).map_err(|e| {
-        shortage(&format!("the mesh `{name}`"), e).hint("use a mesh of fewer triangles")
-    })?;
+    memory
+        .check(size.saturating_mul(2))
+        .map_err(|e| shortage(&format!("the mesh `{name}`"), e).hint("use a mesh of fewer triangles"))?;
     let bytes = files::read(path, LARGEST_FILE).map_err(unreadable)?;
     read_ply(&bytes, &name)
 }
@@ -60,7 +60,8 @@ pub fn read_ply(bytes: &[u8], file_name: &str) -> Result<PlyMesh, Diagnostic> {
     match read() {
         Ok((mesh, 0)) => Ok(PlyMesh { mesh, warnings: Vec::new() }),
         Ok((mesh, left_out)) => {
-            let message = format!("{left_out} faces have fewer than three corners or no area; they are left out");
+            let message =
+                format!("{left_out} faces have fewer than three corners or no area; they are left out");
             Ok(PlyMesh { mesh, warnings: vec![Diagnostic::warning(message).at(origin(1))] })
         }
         Err(Fault { message, line }) => Err(Diagnostic::error(message).at(origin(line.max(1)))),
