@@ -2,6 +2,7 @@
 
 mod common;
 
+use caustica_math::elementary::{atan2, tan};
 use caustica_math::{Filter, Rgb, Vec3};
 use caustica_scene::description::{
     CameraKind, Crop, Geometry, Integrator, LightKind, MaterialKind, Technique, Texture,
@@ -37,19 +38,24 @@ fn near(a: f32, b: f32) {
     assert!((a - b).abs() <= 1e-4 * b.abs(), "{a} {b}");
 }
 
+/// The whole angle, in degrees, whose half has that tangent.
+fn angle(half: f32) -> f32 {
+    2.0 * atan2(half, 1.0).to_degrees()
+}
+
 #[test]
 fn fields_of_view() {
     let given =
         |axis: &str| fov(&format!("<float name='fov' value='40'/><string name='fov_axis' value='{axis}'/>"));
     assert_eq!((given("x"), given("larger")), (40.0, 40.0));
-    let wide = 2.0 * (2.0 * 20.0_f32.to_radians().tan()).atan().to_degrees();
+    let wide = angle(2.0 * tan(20.0_f32.to_radians()));
     near(given("y"), wide);
     near(given("smaller"), wide);
-    let diagonal = 20.0_f32.to_radians().tan() * 2.0 / 5.0_f32.sqrt();
-    near(given("diagonal"), 2.0 * diagonal.atan().to_degrees());
+    let diagonal = tan(20.0_f32.to_radians()) * 2.0 / 5.0_f32.sqrt();
+    near(given("diagonal"), angle(diagonal));
     // A film of 36 mm × 24 mm: 43.27 mm from corner to corner.
     let half = 43.266_6 / 2.0 / 35.0 * 2.0 / 5.0_f32.sqrt();
-    near(fov("<string name='focal_length' value='35mm'/>"), 2.0 * half.atan().to_degrees());
+    near(fov("<string name='focal_length' value='35mm'/>"), angle(half));
     near(fov(""), fov("<string name='focal_length' value='50 mm'/>"));
 }
 

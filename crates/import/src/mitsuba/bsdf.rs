@@ -73,22 +73,8 @@ fn inner(fields: &mut Fields, cx: &mut Context) -> Result<Option<MaterialId>, Di
     let id = read(*first, cx)?;
     let title = fields.title();
     if is_wrapper {
-        for (child, _) in fields.children(Class::Texture) {
-            let _ = child;
-        }
-        fields.ignore(&[
-            "opacity",
-            "scale",
-            "weight",
-            "weights",
-            "thickness",
-            "int_ior",
-            "ext_ior",
-            "alpha",
-            "distribution",
-        ]);
-        fields.texture("opacity");
-        fields.texture("weight");
+        // One warning says it all.
+        fields.take_rest();
         fields.warn(format!("the {title} is not supported yet; shown as the bsdf inside of it"));
     } else if !is_two_sided(&cx.description.materials[id.0 as usize].kind) {
         fields.warn(format!("the {title} is not supported yet; its back is black"));
