@@ -41,22 +41,30 @@ pub(super) fn rectangle() -> Mesh {
     b.0
 }
 
+/// Along which axes u and v grow on each side of Mitsuba's cube (as its texture coordinates there tell).
+const CUBE_SIDES: [[[f64; 3]; 2]; 6] = [
+    [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]],
+    [[-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]],
+    [[0.0, 1.0, 0.0], [0.0, 0.0, -1.0]],
+    [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
+    [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0]],
+];
+
 /// From −1 to 1 in x, y and z; each side has the texture once.
 pub(super) fn cube() -> Mesh {
     let mut b = Builder::default();
-    for axis in 0..3 {
-        for sign in [-1.0, 1.0] {
-            let mut normal = [0.0; 3];
-            normal[axis] = sign;
-            let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[u, v]| {
-                let mut p = normal;
-                // Counter-clockwise from outside.
-                p[(axis + 1) % 3] = (2.0 * u - 1.0) * sign;
-                p[(axis + 2) % 3] = 2.0 * v - 1.0;
-                b.corner(p, normal, [u, v])
-            });
-            b.quad(corners);
-        }
+    for [u_axis, v_axis] in CUBE_SIDES {
+        // On every side u × v is inward.
+        let normal = [0, 1, 2].map(|i| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            v_axis[j] * u_axis[k] - v_axis[k] * u_axis[j]
+        });
+        let corners = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]].map(|[u, v]| {
+            let at = |i: usize| normal[i] + (2.0 * u - 1.0) * u_axis[i] + (2.0 * v - 1.0) * v_axis[i];
+            b.corner([at(0), at(1), at(2)], normal, [u, v])
+        });
+        b.quad(corners);
     }
     b.0
 }
@@ -187,6 +195,24 @@ mod tests {
         {
             let (area, agree) = cross_area(&mesh);
             assert!((area / expected - 1.0).abs() < 3e-4 && agree, "{area} {expected} {agree}");
+        }
+    }
+
+    #[test]
+    fn cubes_have_their_texture_as_mitsuba_places_it() {
+        let mesh = cube();
+        for (p, n, uv) in [
+            ([1.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, 0.0]),
+            ([-1.0, -1.0, 1.0], [-1.0, 0.0, 0.0], [0.0, 1.0]),
+            ([1.0, -1.0, -1.0], [0.0, -1.0, 0.0], [0.0, 1.0]),
+            ([-1.0, 1.0, -1.0], [0.0, 1.0, 0.0], [1.0, 1.0]),
+            ([1.0, 1.0, 1.0], [0.0, 0.0, 1.0], [1.0, 1.0]),
+            ([-1.0, 1.0, -1.0], [0.0, 0.0, -1.0], [0.0, 0.0]),
+        ] {
+            let found = (0..mesh.positions.len())
+                .find(|i| mesh.positions[*i] == Vec3::from(p) && mesh.normals[*i] == Vec3::from(n));
+            let at = mesh.uvs[found.expect("a corner")];
+            assert_eq!([at.x, 1.0 - at.y], uv, "{p:?} {n:?}");
         }
     }
 
