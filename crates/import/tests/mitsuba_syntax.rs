@@ -235,6 +235,20 @@ fn files_of_a_scene() {
 }
 
 #[test]
+fn later_folders_go_before_earlier_ones() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, width) in [("a", 1), ("b", 2)] {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+        let text = format!("<film type='hdrfilm'><integer name='width' value='{width}'/></film>");
+        std::fs::write(folder.path().join(name).join("film.xml"), text).unwrap();
+    }
+    let text = "<scene version='3.0.0'><path value='a'/><path value='b'/>\
+        <sensor type='perspective'><include filename='film.xml'/></sensor></scene>";
+    let read = parse_mitsuba(text, "scene.xml", folder.path(), &[]).unwrap();
+    assert_eq!(read.scene.unwrap().film.width, 2);
+}
+
+#[test]
 fn environments_and_bitmaps() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.png");

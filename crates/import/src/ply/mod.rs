@@ -42,9 +42,9 @@ pub(crate) fn load(path: &Path, memory: MemoryLimit) -> Result<PlyMesh, Diagnost
     let unreadable = |why| Diagnostic::error(format!("cannot read the mesh `{name}`: {why}"));
     let (file, size) = files::open(path).map_err(unreadable)?;
     drop(file);
-    // The mesh takes about as much again as the file; text more than binary.
+    // The file, its mesh, and the copy of it that other shapes of the same file are made from.
     memory
-        .check(size.saturating_mul(2))
+        .check(size.saturating_mul(3))
         .map_err(|e| shortage(&format!("the mesh `{name}`"), e).hint("use a mesh of fewer triangles"))?;
     let bytes = files::read(path, LARGEST_FILE).map_err(unreadable)?;
     read_ply(&bytes, &name)
