@@ -164,7 +164,7 @@ fn alpha(fields: &mut Fields, cx: &mut Context) -> Result<f32, Diagnostic> {
             let message = format!("the distribution `{name}` is not supported yet; `ggx` is used instead");
             fields.warn_at(message, &property.value_origin);
         }
-        None => fields.warn("the distribution `beckmann`, which is the usual one, is not supported yet; `ggx` is used instead"),
+        None => fields.warn("the usual distribution `beckmann` is not supported yet; `ggx` is used instead"),
     }
     let (u, v) = (one_alpha(fields, "alpha_u", cx)?, one_alpha(fields, "alpha_v", cx)?);
     let both = one_alpha(fields, "alpha", cx)?;

@@ -120,7 +120,7 @@ fn spot(fields: &mut Fields, cx: &mut Context) -> Result<LightKind, Diagnostic> 
         return Err(fields.error(message));
     }
     if inner_angle < outer_angle {
-        fields.warn("the border of the spot's cone falls off by a smooth curve here, and linearly with the angle in Mitsuba");
+        fields.warn("the border of the cone falls off by a smooth curve, and in Mitsuba linearly");
     }
     fields.unsupported(&["texture"]);
     Ok(LightKind::Spot {
