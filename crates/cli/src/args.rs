@@ -12,6 +12,8 @@ use caustica_clips::Layout;
 use caustica_compare::{DEFAULT_METHODS, EYE_ONLY};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::loading::Depths;
+
 /// A bidirectional path tracer for scenes whose light is hard to find.
 #[derive(Debug, Parser)]
 #[command(name = "caustica", version, after_help = EXIT_CODES)]
@@ -74,13 +76,16 @@ impl Arguments {
 }
 
 /// What is rendered, and on what.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Source {
-    /// Nori scene file; without it, the built-in scene of caustics is rendered
+    /// Scene file of Nori or Mitsuba; without it, the built-in scene of caustics is rendered
     pub scene: Option<PathBuf>,
     /// Read only files below the scene's own folder: for scenes from people you do not know
     #[arg(long)]
     pub untrusted: bool,
+    /// Give a variable of a Mitsuba scene a value; may be repeated
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
+    pub definitions: Vec<(String, String)>,
     /// Size of the picture, such as 640x480 [default: as the scene says]
     #[arg(long, value_name = "WxH", value_parser = parse_resolution)]
     pub resolution: Option<(u32, u32)>,
@@ -96,7 +101,7 @@ pub struct Source {
 }
 
 /// For how long to render.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Length {
     /// Samples per pixel [default: as the scene says, or without limit if --time is given]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -124,7 +129,7 @@ pub struct Voice {
     pub json: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Render {
     #[command(flatten)]
     pub source: Source,
@@ -160,7 +165,7 @@ pub struct Render {
 }
 
 /// How a long render is kept safe.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Checkpoint {
     /// Keep what is rendered so far in this file, which ends in .film and is replaced whole or not at all
     #[arg(long = "checkpoint", value_name = "FILE")]
@@ -173,7 +178,7 @@ pub struct Checkpoint {
     pub resume: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Merge {
     /// Films of the same scene and settings, of different samples
     #[arg(required = true, value_name = "FILM")]
@@ -185,7 +190,7 @@ pub struct Merge {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Compare {
     #[command(flatten)]
     pub source: Source,
@@ -214,7 +219,7 @@ pub struct Compare {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Pyramid {
     #[command(flatten)]
     pub source: Source,
@@ -235,7 +240,7 @@ pub struct Pyramid {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Verify {
     #[command(flatten)]
     pub source: Source,
@@ -257,7 +262,7 @@ pub struct Verify {
     pub voice: Voice,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Explain {
     #[command(flatten)]
     pub source: Source,
@@ -299,7 +304,7 @@ impl Video {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Converge {
     #[command(flatten)]
     pub clip: Clip,
@@ -315,7 +320,7 @@ pub struct Converge {
     pub method: Method,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct PyramidVideo {
     #[command(flatten)]
     pub clip: Clip,
@@ -332,7 +337,7 @@ pub struct PyramidVideo {
     pub sampling: Sampling,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct OrbitVideo {
     #[command(flatten)]
     pub clip: Clip,
@@ -350,7 +355,7 @@ pub struct OrbitVideo {
 }
 
 /// What all videos have.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Clip {
     #[command(flatten)]
     pub source: Source,
@@ -373,7 +378,7 @@ pub struct Clip {
 }
 
 /// How light is found.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Method {
     /// Integrator
     #[arg(long, value_name = "NAME", value_parser = integrator_names(), hide_possible_values = true,
@@ -388,7 +393,7 @@ pub struct Method {
 }
 
 /// How paths are sampled and weighed.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Sampling {
     /// Most edges of a path: 1 is lamps seen directly, 2 adds direct light [default: no limit]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -408,6 +413,16 @@ pub struct Sampling {
 }
 
 impl Sampling {
+    /// The same with what the scene asks for where nothing else is said.
+    #[must_use]
+    pub fn or(&self, depths: Depths) -> Self {
+        Self {
+            max_depth: self.max_depth.or(depths.max_depth),
+            roulette_depth: self.roulette_depth.or(depths.roulette_start),
+            ..*self
+        }
+    }
+
     /// The settings of an integrator that is sampled so, with all strategies.
     pub fn settings(&self, integrator: Integrator) -> Settings {
         Settings {
@@ -457,7 +472,7 @@ impl Look {
     }
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Develop {
     /// Film, or OpenEXR file with an eye and a light image, as `caustica render` writes them
     pub film: PathBuf,
@@ -471,19 +486,22 @@ pub struct Develop {
     pub look: Look,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Info {
-    /// Nori scene file or film; without it, the built-in scene
+    /// Scene file of Nori or Mitsuba, or film; without it, the built-in scene
     pub scene: Option<PathBuf>,
     /// Read only files below the scene's own folder: for scenes from people you do not know
     #[arg(long)]
     pub untrusted: bool,
+    /// Give a variable of a Mitsuba scene a value; may be repeated
+    #[arg(short = 'D', long = "define", value_name = "NAME=VALUE", value_parser = parse_definition)]
+    pub definitions: Vec<(String, String)>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct Test {
     /// Nori scene file with tests
     pub scene: PathBuf,
@@ -648,6 +666,13 @@ fn parse_resolution(text: &str) -> Result<(u32, u32), String> {
 fn numbers<const N: usize>(text: &str) -> Option<[u32; N]> {
     let parts: Vec<u32> = text.split(',').map(|p| p.trim().parse().ok()).collect::<Option<_>>()?;
     parts.try_into().ok()
+}
+
+fn parse_definition(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("use NAME=VALUE, such as spp=64".into()),
+    }
 }
 
 fn parse_crop(text: &str) -> Result<Crop, String> {

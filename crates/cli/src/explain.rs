@@ -17,7 +17,7 @@ use crate::verify::{open_small, percent};
 const ROWS: usize = 12;
 
 pub fn run(args: &Explain, console: &mut Console) -> Result<ExitCode, Failure> {
-    let (scene, names) = open_small(&args.source, console)?;
+    let (scene, names, depths) = open_small(&args.source, console)?;
     let window = scene.film.window();
     if let Some(r) = args.region {
         check(r, window)?;
@@ -25,7 +25,7 @@ pub fn run(args: &Explain, console: &mut Console) -> Result<ExitCode, Failure> {
     let chosen = integrator(&args.integrator, &scene).unwrap_or(Integrator::Bdpt);
     let question = Question {
         region: args.region,
-        settings: args.sampling.settings(chosen),
+        settings: args.sampling.or(depths).settings(chosen),
         samples: args.spp,
         threads: args.source.threads.map(usize::from),
         names: &names,

@@ -3,6 +3,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use caustica::film::{FilmCounts, FilmFacts, FilmRecord, Window};
+use caustica::import::Provision;
 
 use caustica::scene::bvh::TreeQuality;
 use caustica::session::info::{SceneInfo, describe, outline};
@@ -19,7 +20,8 @@ pub fn run(args: &Info, console: &mut Console) -> Result<ExitCode, Failure> {
     if let Some(film) = args.scene.as_deref().filter(|path| is_film_file(path)) {
         return film_info(film, console);
     }
-    let description = loading::description(args.scene.as_deref(), loading::trust(args.untrusted), console)?;
+    let from = Provision { trust: loading::trust(args.untrusted), variables: &args.definitions };
+    let (description, _) = loading::description(args.scene.as_deref(), &from, console)?;
     let outline = outline(&description);
     let scene = loading::scene(description, TreeQuality::default(), console)?;
     let info = describe(&scene, outline);

@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 
 use caustica::description::{Camera, Integrator};
-use caustica::import::{self, Trust};
+use caustica::import::{self, Provision, Trust};
 use caustica::scene::Diagnostic;
 use caustica::scene::bvh::TreeQuality;
 use caustica::{Description, Scene, default_scene};
@@ -15,16 +15,35 @@ pub fn trust(untrusted: bool) -> Trust {
     if untrusted { Trust::OwnFolder } else { Trust::Full }
 }
 
+/// How long paths are, as a scene asks for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Depths {
+    /// Most edges of a path.
+    pub max_depth: Option<u32>,
+    /// Bounces before roulette.
+    pub roulette_start: Option<u32>,
+}
+
 /// The scene of that file, or the built-in one.
-pub fn description(path: Option<&Path>, trust: Trust, console: &mut Console) -> Result<Description, Failure> {
-    let Some(path) = path else { return Ok(default_scene::description()) };
-    let loaded = import::load_with(path, trust)?;
+pub fn description(
+    path: Option<&Path>,
+    provision: &Provision<'_>,
+    console: &mut Console,
+) -> Result<(Description, Depths), Failure> {
+    let Some(path) = path else {
+        return match provision.variables {
+            [] => Ok((default_scene::description(), Depths::default())),
+            _ => Err(Failure::Usage("the built-in scene has no variables".into())),
+        };
+    };
+    let loaded = import::load_with(path, provision)?;
     console.warn(loaded.warnings);
-    loaded.scene.ok_or_else(|| {
+    let depths = Depths { max_depth: loaded.max_depth, roulette_start: loaded.roulette_start };
+    let description = loaded.scene.ok_or_else(|| {
         Diagnostic::error(format!("`{}` carries tests but no scene", path.display()))
             .hint("run it with `caustica test`")
-            .into()
-    })
+    })?;
+    Ok((description, depths))
 }
 
 /// The description made ready.
@@ -41,6 +60,8 @@ pub struct Opened {
     pub integrator: Integrator,
     /// Samples per pixel that it asks for.
     pub samples: u32,
+    /// How long paths are that it asks for.
+    pub depths: Depths,
     /// Its camera.
     pub camera: Camera,
 }
@@ -56,28 +77,28 @@ pub fn open_with<T>(
     console: &mut Console,
     look: impl FnOnce(&mut Description) -> T,
 ) -> Result<(Opened, T), Failure> {
-    let mut description = description(source.scene.as_deref(), trust(source.untrusted), console)?;
+    let (mut description, depths) = description(source.scene.as_deref(), &source.provision(), console)?;
     override_film(&mut description, source, console)?;
     let seen = look(&mut description);
     let (integrator, samples) = (description.integrator, description.samples.max(1));
     let camera = description.camera.clone();
     let scene = scene(description, source.tree.into(), console)?;
-    Ok((Opened { scene, integrator, samples, camera }, seen))
+    Ok((Opened { scene, integrator, samples, depths, camera }, seen))
 }
 
-/// Loads a scene to be looked into, its picture made smaller if a longest side is given.
+/// Loads a scene to be looked into, its picture made smaller if a longest side is given; and the names of its shapes.
 pub fn open_shrunk(
     source: &Source,
     side: Option<u32>,
     console: &mut Console,
-) -> Result<(Scene, Vec<String>), Failure> {
-    let mut description = description(source.scene.as_deref(), trust(source.untrusted), console)?;
+) -> Result<(Scene, Vec<String>, Depths), Failure> {
+    let (mut description, depths) = description(source.scene.as_deref(), &source.provision(), console)?;
     override_film(&mut description, source, console)?;
     if let Some(side) = side {
         caustica_verify::shrink(&mut description.film, side);
     }
     let names = description.shapes.iter().map(|s| s.name.clone()).collect();
-    Ok((scene(description, source.tree.into(), console)?, names))
+    Ok((scene(description, source.tree.into(), console)?, names, depths))
 }
 
 /// `--resolution` and `--crop`.
@@ -105,6 +126,11 @@ fn override_film(d: &mut Description, source: &Source, console: &mut Console) ->
 }
 
 impl Source {
+    /// What its scene may read, and is given.
+    pub fn provision(&self) -> Provision<'_> {
+        Provision { trust: trust(self.untrusted), variables: &self.definitions }
+    }
+
     /// The scene file's name, for people.
     pub fn name(&self) -> String {
         let name = self.scene.as_deref().and_then(Path::file_name);

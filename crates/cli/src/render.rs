@@ -13,9 +13,10 @@ use crate::checkpoint::{self, Checkpoint};
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
+use crate::loading::{self, Depths};
 use crate::outputs::Outputs;
 use crate::progress::Bar;
-use crate::{loading, prompt, replay};
+use crate::{prompt, replay};
 
 /// What `--json` prints, beside warnings.
 #[derive(Serialize)]
@@ -36,7 +37,7 @@ struct Outcome<'a> {
 pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let (opened, hash) = loading::open_with(&args.source, console, content_hash)?;
     let scene = opened.scene;
-    let settings = settings(&args.method, &scene, opened.integrator);
+    let settings = settings(&args.method, &scene, (opened.integrator, opened.depths));
     if let Some(sample) = args.replay {
         return replay::run(&scene, settings, sample, console);
     }
@@ -87,15 +88,16 @@ fn options(args: &Render, settings: Settings, usual: u32) -> RenderOptions {
     RenderOptions { settings, first_sample, samples, time: args.length.time, threads }
 }
 
-/// The settings that the arguments ask for; the scene's own integrator if they name none.
-pub fn settings(method: &Method, scene: &Scene, asked: Integrator) -> Settings {
+/// The settings that the arguments ask for; the scene's own integrator and depths if they name none.
+pub fn settings(method: &Method, scene: &Scene, (asked, depths): (Integrator, Depths)) -> Settings {
     let named = method
         .integrator
         .as_deref()
         .and_then(|name| integrator(name, scene))
         // If the scene asks for the same, it may have set its parameters.
         .filter(|i| integrator_name(i) != integrator_name(&asked));
-    Settings { strategies: method.strategies.clone(), ..method.sampling.settings(named.unwrap_or(asked)) }
+    let sampling = method.sampling.or(depths);
+    Settings { strategies: method.strategies.clone(), ..sampling.settings(named.unwrap_or(asked)) }
 }
 
 /// The integrator of that name, with parameters that suit the scene.

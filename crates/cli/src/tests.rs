@@ -1,6 +1,6 @@
 use std::process::ExitCode;
 
-use caustica::import;
+use caustica::import::{self, Provision};
 use caustica::scene::Diagnostic;
 use caustica::session::scene_tests::{self, Outcome, Summary, TestOptions};
 use serde::Serialize;
@@ -19,7 +19,8 @@ struct Results {
 }
 
 pub fn run(args: &Test, console: &mut Console) -> Result<ExitCode, Failure> {
-    let loaded = import::load_with(&args.scene, loading::trust(args.untrusted))?;
+    let loaded =
+        import::load_with(&args.scene, &Provision { trust: loading::trust(args.untrusted), variables: &[] })?;
     console.warn(loaded.warnings);
     if loaded.tests.is_empty() {
         return Err(Diagnostic::error(format!("`{}` carries no tests", args.scene.display()))

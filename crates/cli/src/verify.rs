@@ -17,7 +17,7 @@ use crate::compare::report_failure;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
-use crate::loading;
+use crate::loading::{self, Depths};
 use crate::progress::Bar;
 
 /// The longest side of the picture if nobody asks for a size.
@@ -36,7 +36,8 @@ struct Told<'a> {
 }
 
 pub fn run(args: &Verify, console: &mut Console) -> Result<ExitCode, Failure> {
-    let (scene, _) = open_small(&args.source, console)?;
+    let (scene, _, depths) = open_small(&args.source, console)?;
+    let args = &Verify { sampling: args.sampling.or(depths), ..args.clone() };
     let folder = args.output.clone().unwrap_or_else(|| args.source.beside("-verify"));
     let files = ["heat.png", "report.json", "index.html"].map(|name| folder.join(name));
     fs::create_dir_all(&folder)
@@ -63,7 +64,7 @@ pub fn run(args: &Verify, console: &mut Console) -> Result<ExitCode, Failure> {
 }
 
 /// The scene, in a small picture unless a size is asked for, and the names of its shapes.
-pub fn open_small(source: &Source, console: &mut Console) -> Result<(Scene, Vec<String>), Failure> {
+pub fn open_small(source: &Source, console: &mut Console) -> Result<(Scene, Vec<String>, Depths), Failure> {
     let side = if source.resolution.is_some() || source.crop.is_some() { None } else { Some(SIDE) };
     loading::open_shrunk(source, side, console)
 }

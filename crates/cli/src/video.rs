@@ -62,7 +62,7 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
             converge(&opened.scene, &what, &options(&what.render.settings.integrator), control, frames)
         }
         Video::Pyramid(a) => {
-            let settings = a.sampling.settings(Integrator::Bdpt);
+            let settings = a.sampling.or(opened.depths).settings(Integrator::Bdpt);
             let render = render(clip, settings, a.spp.unwrap_or(opened.samples));
             let what = PyramidClip { render, rows: a.rows, hold: a.hold };
             let options = options(&Integrator::Bdpt);
@@ -73,7 +73,7 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
             pyramid(&opened.scene, &what, (&options, control), rendering, frames)
         }
         Video::Orbit(a) => {
-            let settings = settings(&a.method, &opened.scene, opened.integrator);
+            let settings = settings(&a.method, &opened.scene, (opened.integrator, opened.depths));
             console.warn(strategy_warning(&a.method, &settings.integrator));
             let render = render(clip, settings, a.spp);
             let what = Orbit { render, degrees: a.degrees, centre: a.centre.map(Vec3::from) };
@@ -118,7 +118,7 @@ fn layout(asked: Layout, settings: &Settings, scene: &Scene, console: &mut Conso
 
 fn converging(a: &args::Converge, opened: &Opened) -> Converge {
     let scene: &Scene = &opened.scene;
-    let settings = settings(&a.method, scene, opened.integrator);
+    let settings = settings(&a.method, scene, (opened.integrator, opened.depths));
     let samples = a.length.samples(opened.samples);
     let render = RenderOptions { time: a.length.time, ..render(&a.clip, settings, samples) };
     Converge { render, layout: a.layout.into(), hold: a.hold }

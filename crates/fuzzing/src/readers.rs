@@ -26,7 +26,7 @@ pub fn nori_xml(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     match parse_nori_with(&text, "s.xml", folder().path(), Trust::OwnFolder) {
         Err(error) => check_place(&error, &text),
-        Ok(Loaded { scene, tests, warnings }) => {
+        Ok(Loaded { scene, tests, warnings, .. }) => {
             warnings.iter().filter(|w| w.origin.is_some()).for_each(|w| check_place(w, &text));
             let stages = tests.into_iter().flat_map(|test| {
                 let scenes = match test.kind {

@@ -41,9 +41,23 @@ impl<'a> Folder<'a> {
         if self.trust == Trust::Full {
             return Ok(path);
         }
-        // By its name alone, so that the answer does not tell what exists elsewhere.
-        if climbs_out(Path::new(name)) {
+        self.refuse_climbing(name)?;
+        self.within(path)
+    }
+
+    /// Refuses a name that leads out of the scene's folder, if that is forbidden: by itself alone, so that the answer
+    /// does not tell what exists elsewhere.
+    pub(crate) fn refuse_climbing(&self, name: &str) -> Result<(), String> {
+        if self.trust == Trust::OwnFolder && climbs_out(Path::new(name)) {
             return Err(OUTSIDE.into());
+        }
+        Ok(())
+    }
+
+    /// A path that is there, if it may be opened, after symbolic links are followed where that matters.
+    pub(crate) fn within(&self, path: PathBuf) -> Result<PathBuf, String> {
+        if self.trust == Trust::Full {
+            return Ok(path);
         }
         let base = if self.base.as_os_str().is_empty() { Path::new(".") } else { self.base };
         let root = base.canonicalize().map_err(|e| reason(&e))?;
@@ -67,6 +81,32 @@ fn climbs_out(path: &Path) -> bool {
         }
     }
     false
+}
+
+/// What a scene may hold. A mesh that is named many times is there many times, and deflate shrinks a plain
+/// image a thousandfold, so that a short file could fill any memory.
+#[derive(Clone, Copy)]
+pub(crate) struct Limits {
+    /// Triangles of all shapes together.
+    pub(crate) triangles: usize,
+    /// Pixels of all images together.
+    pub(crate) pixels: u64,
+}
+
+impl Limits {
+    /// About 1 GB each where the scene is not trusted.
+    pub(crate) fn of(trust: Trust) -> Self {
+        match trust {
+            Trust::Full => Self { triangles: 1 << 28, pixels: u64::MAX },
+            Trust::OwnFolder => Self { triangles: 1 << 24, pixels: 1 << 26 },
+        }
+    }
+}
+
+/// Takes an amount from what is left; `None` if that is not enough.
+pub(crate) fn take(left: &mut usize, amount: usize) -> Option<()> {
+    *left = left.checked_sub(amount)?;
+    Some(())
 }
 
 /// Opens a regular file and tells its size; the error says why that failed, in words.

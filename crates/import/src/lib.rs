@@ -1,12 +1,14 @@
-//! Scene files to descriptions: Nori's XML, Wavefront OBJ meshes, and PNG, JPEG and OpenEXR images.
+//! Scene files to descriptions: Nori's and Mitsuba's XML, OBJ and PLY meshes, and PNG, JPEG and OpenEXR images.
 //!
 //! Whatever is wrong with a file is told with its line and column where it has any; no file makes these
 //! readers panic, hang or allocate without bound.
 
 mod files;
 mod image;
+mod mitsuba;
 mod nori;
 mod obj;
+mod ply;
 mod source;
 mod suggest;
 
@@ -20,6 +22,7 @@ pub use files::Trust;
 pub use image::{ReadImage, decode_image, read_image, read_image_within};
 pub use nori::{SceneTest, TestKind};
 pub use obj::{ObjMesh, load_obj, load_obj_within, read_obj};
+pub use ply::{PlyMesh, read_ply};
 
 /// What a scene file holds.
 #[derive(Clone, Debug)]
@@ -30,6 +33,20 @@ pub struct Loaded {
     pub tests: Vec<SceneTest>,
     /// What is worth knowing.
     pub warnings: Vec<Diagnostic>,
+    /// The most edges that a path may have, if the file says so.
+    pub max_depth: Option<u32>,
+    /// After how many bounces roulette begins, if the file says so.
+    pub roulette_start: Option<u32>,
+}
+
+/// What a scene is given beside its own file.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Provision<'a> {
+    /// Which files it may name.
+    pub trust: Trust,
+    /// Values for its variables (`$name` in Mitsuba's files), as (name, value). A name that the scene does not know is
+    /// an error.
+    pub variables: &'a [(String, String)],
 }
 
 /// The most bytes that a scene file may have.
@@ -37,21 +54,22 @@ const LARGEST_SCENE_FILE: u64 = 64 << 20;
 
 /// Reads a scene file and all files that it names, wherever they are.
 pub fn load(path: &Path) -> Result<Loaded, Diagnostic> {
-    load_file(path, Trust::Full, MemoryLimit::Machine)
+    load_file(path, &Provision::default(), MemoryLimit::Machine)
 }
 
 /// The same in so much memory: images and meshes that take more are refused, images before they are decoded and
 /// meshes while they are read.
 pub fn load_within(path: &Path, memory: MemoryLimit) -> Result<Loaded, Diagnostic> {
-    load_file(path, Trust::Full, memory)
+    load_file(path, &Provision::default(), memory)
 }
 
-/// Reads a scene file and the files that it names, where `trust` allows it to name them.
-pub fn load_with(path: &Path, trust: Trust) -> Result<Loaded, Diagnostic> {
-    load_file(path, trust, MemoryLimit::Machine)
+/// Reads a scene file and the files that it names, as far as they are provided.
+pub fn load_with(path: &Path, provision: &Provision<'_>) -> Result<Loaded, Diagnostic> {
+    load_file(path, provision, MemoryLimit::Machine)
 }
 
-fn load_file(path: &Path, trust: Trust, memory: MemoryLimit) -> Result<Loaded, Diagnostic> {
+fn load_file(path: &Path, provision: &Provision<'_>, memory: MemoryLimit) -> Result<Loaded, Diagnostic> {
+    let Provision { trust, variables } = *provision;
     let name = path.display().to_string();
     let bytes = files::read(path, LARGEST_SCENE_FILE)
         .map_err(|why| Diagnostic::error(format!("cannot read the scene `{name}`: {why}")))?;
@@ -67,7 +85,21 @@ fn load_file(path: &Path, trust: Trust, memory: MemoryLimit) -> Result<Loaded, D
                 .hint("save the file with the encoding UTF-8"));
         }
     };
-    parse(text, &name, Folder { base: path.parent().unwrap_or(Path::new("")), embedded: &[], trust, memory })
+    let folder = Folder { base: path.parent().unwrap_or(Path::new("")), embedded: &[], trust, memory };
+    parse_with(text, &name, folder, variables)
+}
+
+/// Reads a scene from the text of a Mitsuba scene file. `file_name` is for messages; relative paths start
+/// at `base_dir`; `variables` are (name, value).
+pub fn parse_mitsuba(
+    text: &str,
+    file_name: &str,
+    base_dir: &Path,
+    variables: &[(String, String)],
+) -> Result<Loaded, Diagnostic> {
+    let (trust, memory) = (Trust::Full, MemoryLimit::Machine);
+    let folder = Folder { base: base_dir, embedded: &[], trust, memory };
+    mitsuba::read(&source::Source::new(file_name, text), folder, variables)
 }
 
 /// Reads a scene from the text of a Nori scene file. `file_name` is for messages; relative paths start
@@ -93,11 +125,29 @@ pub fn parse_embedded(text: &str, file_name: &str, meshes: &[(&str, &str)]) -> R
 }
 
 fn parse(text: &str, file_name: &str, folder: Folder<'_>) -> Result<Loaded, Diagnostic> {
+    parse_with(text, file_name, folder, &[])
+}
+
+/// Reads a text by the reader of its format, which its root tells.
+fn parse_with(
+    text: &str,
+    file_name: &str,
+    folder: Folder<'_>,
+    variables: &[(String, String)],
+) -> Result<Loaded, Diagnostic> {
     if text.len() as u64 > LARGEST_SCENE_FILE {
         return Err(Diagnostic::error(format!(
             "`{file_name}` is larger than {} MiB",
             LARGEST_SCENE_FILE >> 20
         )));
     }
-    nori::read(&source::Source::new(file_name, text), folder)
+    let source = source::Source::new(file_name, text);
+    if mitsuba::is_mitsuba(text) {
+        return mitsuba::read(&source, folder, variables);
+    }
+    if let Some((name, _)) = variables.first() {
+        return Err(Diagnostic::error(format!("the scene has no variable `{}`", suggest::shorten(name)))
+            .hint("only scenes of Mitsuba have variables"));
+    }
+    nori::read(&source, folder)
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use caustica_import::{Trust, load, load_with};
+use caustica_import::{Provision, Trust, load, load_with};
 use caustica_scene::description::Geometry;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
@@ -82,7 +82,8 @@ fn naming(root: &tempfile::TempDir, file: &str, trust: Trust) -> Result<(), caus
     let path = root.path().join("scene/s.xml");
     fs::write(&path, scene(&format!("<mesh type='obj'><string name='filename' value='{file}'/></mesh>")))
         .unwrap();
-    load_with(&path, trust).map(|loaded| assert_eq!(loaded.scene.unwrap().shapes.len(), 1))
+    load_with(&path, &Provision { trust, variables: &[] })
+        .map(|loaded| assert_eq!(loaded.scene.unwrap().shapes.len(), 1))
 }
 
 #[test]
@@ -123,8 +124,39 @@ fn untrusted_scenes_name_no_images_elsewhere() {
     let path = root.path().join("scene/s.xml");
     let sky = "<emitter type='envmap'><string name='filename' value='../sky.png'/></emitter>";
     fs::write(&path, scene(sky)).unwrap();
-    let error = load_with(&path, Trust::OwnFolder).unwrap_err();
+    let error = load_with(&path, &Provision { trust: Trust::OwnFolder, variables: &[] }).unwrap_err();
     assert!(error.message.contains("the image `../sky.png`") && error.message.contains("outside"), "{error}");
+}
+
+#[test]
+fn untrusted_mitsuba_scenes_stay_in_their_folder_too() {
+    let root = two_folders();
+    fs::write(root.path().join("inner.xml"), "<scene version='3.0.0'/>").unwrap();
+    fs::write(root.path().join("scene/inner.xml"), "<scene version='3.0.0'/>").unwrap();
+    let path = root.path().join("scene/s.xml");
+    let mesh = |name: &str| format!("<shape type='obj'><string name='filename' value='{name}'/></shape>");
+    let load = |content: &str, trust| {
+        fs::write(&path, format!("<scene version='3.0.0'><sensor type='perspective'/>\n{content}\n</scene>"))
+            .unwrap();
+        load_with(&path, &Provision { trust, variables: &[] })
+    };
+    for content in [
+        "<include filename='../inner.xml'/>".to_owned(),
+        "<path value='..'/>".to_owned(),
+        mesh("../outside.obj"),
+        format!("<path value='sub'/>{}", mesh("../../outside.obj")),
+        "<emitter type='envmap'><string name='filename' value='../sky.exr'/></emitter>".to_owned(),
+    ] {
+        let error = load(&content, Trust::OwnFolder).unwrap_err();
+        assert!(error.message.contains("outside of the scene's folder"), "{content}: {error}");
+        assert_eq!(error.origin.unwrap().line, 2, "{content}");
+    }
+    for content in
+        ["<include filename='inner.xml'/>".to_owned(), format!("<path value='sub'/>{}", mesh("in.obj"))]
+    {
+        load(&content, Trust::OwnFolder).unwrap();
+    }
+    load(&mesh("../outside.obj"), Trust::Full).unwrap();
 }
 
 #[cfg(unix)]

@@ -9,42 +9,16 @@ use caustica_scene::memory::shortage;
 use caustica_scene::{Description, Diagnostic, Origin};
 
 use super::tree::Place;
-use crate::files::{Folder, Trust};
+use crate::files::{Folder, Limits, Trust, take};
 use crate::suggest::shorten;
 use crate::{image, obj};
 
 /// The most warnings that are kept: more of them help nobody.
 const MOST_WARNINGS: usize = 1000;
 
-/// What a scene may hold. A mesh that is named many times is there many times, and deflate shrinks a plain
-/// image a thousandfold, so that a short file could fill any memory.
-#[derive(Clone, Copy)]
-struct Limits {
-    /// Triangles of all shapes together.
-    triangles: usize,
-    /// Pixels of all images together.
-    pixels: u64,
-}
-
-impl Limits {
-    /// About 1 GB each where the scene is not trusted.
-    fn of(trust: Trust) -> Self {
-        match trust {
-            Trust::Full => Self { triangles: 1 << 28, pixels: u64::MAX },
-            Trust::OwnFolder => Self { triangles: 1 << 24, pixels: 1 << 26 },
-        }
-    }
-}
-
 fn too_many_triangles(place: Place, trust: Trust, range: &Range<usize>) -> Diagnostic {
     let most = Limits::of(trust).triangles;
     place.error(format!("the scene has more than {most} triangles"), range.clone())
-}
-
-/// Takes an amount from what is left; `None` if that is not enough.
-fn take(left: &mut usize, amount: usize) -> Option<()> {
-    *left = left.checked_sub(amount)?;
-    Some(())
 }
 
 /// Warnings, up to a number.

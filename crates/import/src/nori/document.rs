@@ -13,7 +13,7 @@ const MOST_ATTRIBUTES: usize = 256;
 const MOST_NAMESPACES: usize = 64;
 
 /// Parses the text, if its parser can do so in time and memory proportional to it.
-pub(super) fn parse<'t>(source: &Source<'t>) -> Result<Document<'t>, Diagnostic> {
+pub(crate) fn parse<'t>(source: &Source<'t>) -> Result<Document<'t>, Diagnostic> {
     check_limits(source)?;
     // Without a document type there are no entities, hence none that expand without bound.
     let options = ParsingOptions {

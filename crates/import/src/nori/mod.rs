@@ -8,18 +8,18 @@ mod bsdf;
 mod camera;
 mod class;
 mod context;
-mod document;
+pub(crate) mod document;
 mod emitter;
 mod fields;
 mod integrator;
-mod range;
+pub(crate) mod range;
 mod scene;
 mod shape;
 mod test;
 mod texture;
 mod transform;
 mod tree;
-mod value;
+pub(crate) mod value;
 
 use caustica_scene::Diagnostic;
 
@@ -48,5 +48,5 @@ pub(crate) fn read(source: &Source, folder: Folder<'_>) -> Result<Loaded, Diagno
             return Err(place.error(message, object.range));
         }
     };
-    Ok(Loaded { scene, tests, warnings: warnings.into_vec() })
+    Ok(Loaded { scene, tests, warnings: warnings.into_vec(), max_depth: None, roulette_start: None })
 }

@@ -2,7 +2,9 @@
 
 /// Bounds of a number.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Bounds {
+pub(crate) enum Bounds {
+    /// Any finite number.
+    Finite,
     /// More than 0.
     Positive,
     /// 0 or more.
@@ -17,8 +19,9 @@ pub(super) enum Bounds {
 
 impl Bounds {
     /// The value, or the rule that it breaks.
-    pub(super) fn check(self, value: f64) -> Result<f32, String> {
+    pub(crate) fn check(self, value: f64) -> Result<f32, String> {
         let (allowed, rule) = match self {
+            Self::Finite => (true, "must be finite".to_owned()),
             Self::Positive => (value > 0.0, "must be finite and more than 0".to_owned()),
             Self::NotNegative => (value >= 0.0, "must be finite and not negative".to_owned()),
             Self::PositiveOrInfinite => (value > 0.0, "must be more than 0".to_owned()),

@@ -43,9 +43,9 @@ pub(super) const TAGS: &[&str] =
 
 /// What is wrong with a text, and where in it.
 #[derive(Debug)]
-pub(super) struct Bad {
-    pub(super) message: String,
-    pub(super) range: Range<usize>,
+pub(crate) struct Bad {
+    pub(crate) message: String,
+    pub(crate) range: Range<usize>,
 }
 
 /// The value that a property's tag and text stand for; the tag must be one of [`TAGS`].
@@ -81,7 +81,7 @@ pub(super) fn array<const N: usize>(text: &str) -> Result<[f64; N], Bad> {
 }
 
 /// Finite numbers separated by commas and white space, as many as `count` allows.
-pub(super) fn numbers(text: &str, count: std::ops::RangeInclusive<usize>) -> Result<Vec<f64>, Bad> {
+pub(crate) fn numbers(text: &str, count: std::ops::RangeInclusive<usize>) -> Result<Vec<f64>, Bad> {
     let mut values = Vec::new();
     let mut words = 0;
     for word in text.split([',', ' ', '\t', '\r', '\n']).filter(|w| !w.is_empty()) {

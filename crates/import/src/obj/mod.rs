@@ -6,7 +6,7 @@
 mod builder;
 mod lines;
 mod statements;
-mod triangulate;
+pub(crate) mod triangulate;
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;

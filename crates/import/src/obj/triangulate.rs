@@ -7,11 +7,11 @@ type Point = [f64; 3];
 
 /// Why a polygon cannot be cut into triangles.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct TooManyCorners;
+pub(crate) struct TooManyCorners;
 
 /// Appends the triangles of a polygon to `triangles`, as indices of its corners and in its winding;
 /// those without area are left out.
-pub(super) fn triangulate(corners: &[Point], triangles: &mut Vec<[u32; 3]>) -> Result<(), TooManyCorners> {
+pub(crate) fn triangulate(corners: &[Point], triangles: &mut Vec<[u32; 3]>) -> Result<(), TooManyCorners> {
     let first = triangles.len();
     if corners.len() == 3 {
         triangles.push([0, 1, 2]);

@@ -1,0 +1,153 @@
+//! What is being built, and the files it is built from.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use caustica_math::Rgb;
+use caustica_scene::description::{ImageId, Material, MaterialId, MaterialKind, Mesh};
+use caustica_scene::memory::shortage;
+use caustica_scene::{Description, Diagnostic, Origin};
+
+use super::paths::Paths;
+use super::tree::Tree;
+use crate::files::{Limits, take};
+use crate::{image, obj, ply};
+
+/// The most warnings that are kept: more of them help nobody.
+const MOST_WARNINGS: usize = 1000;
+
+/// A description that is being filled.
+pub(super) struct Context<'c> {
+    pub(super) tree: &'c Tree,
+    paths: Paths<'c>,
+    warnings: Vec<Diagnostic>,
+    pub(super) description: Description,
+    /// The most edges of a path, if the scene says so.
+    pub(super) max_depth: Option<u32>,
+    /// The bounces before roulette, if the scene says so.
+    pub(super) roulette_start: Option<u32>,
+    meshes: BTreeMap<PathBuf, Mesh>,
+    images: BTreeMap<PathBuf, ImageId>,
+    /// The materials of objects of the tree.
+    pub(super) materials: BTreeMap<usize, MaterialId>,
+    default_material: Option<MaterialId>,
+    /// What may still come.
+    left: Limits,
+}
+
+impl<'c> Context<'c> {
+    pub(super) fn new(tree: &'c Tree, paths: Paths<'c>, warnings: Vec<Diagnostic>) -> Self {
+        let left = Limits::of(paths.folder.trust);
+        Self {
+            tree,
+            paths,
+            warnings,
+            description: Description { samples: 4, ..Description::default() },
+            max_depth: None,
+            roulette_start: None,
+            meshes: BTreeMap::new(),
+            images: BTreeMap::new(),
+            materials: BTreeMap::new(),
+            default_material: None,
+            left,
+        }
+    }
+
+    pub(super) fn push(&mut self, warning: Diagnostic) {
+        if self.warnings.len() < MOST_WARNINGS {
+            self.warnings.push(warning);
+        } else if self.warnings.len() == MOST_WARNINGS {
+            self.warnings.push(Diagnostic::warning("there are more warnings, which are not shown"));
+        }
+    }
+
+    /// The description and the warnings.
+    pub(super) fn finish(self) -> (Description, Vec<Diagnostic>) {
+        (self.description, self.warnings)
+    }
+
+    /// Where a file is that is named at `origin`.
+    fn path(&self, what: &str, file: &str, origin: &Origin) -> Result<PathBuf, Diagnostic> {
+        self.paths.find(file).map_err(|why| {
+            let file = crate::suggest::shorten(file);
+            super::tree::error(format!("cannot read the {what} `{file}`: {why}"), origin)
+        })
+    }
+
+    /// The mesh of a file that is named at `origin`.
+    pub(super) fn mesh(&mut self, file: &str, format: Format, origin: &Origin) -> Result<Mesh, Diagnostic> {
+        let path = match self.paths.folder.embedded(file) {
+            Some(_) => PathBuf::from(file),
+            None => self.path("mesh", file, origin)?,
+        };
+        let placed = |e: Diagnostic| if e.origin.is_some() { e } else { e.at(Some(origin.clone())) };
+        let mesh = if let Some(mesh) = self.meshes.get(&path) {
+            let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs);
+            let bytes = (bytes + size_of_val(&*mesh.triangles)) as u64;
+            let error = |e| placed(shortage(&format!("another copy of the mesh `{file}`"), e));
+            self.paths.folder.memory.check(bytes).map_err(error)?;
+            mesh.clone()
+        } else {
+            let (mesh, warnings) = self.read_mesh(file, &path, format).map_err(placed)?;
+            warnings.into_iter().for_each(|w| self.push(w));
+            self.meshes.insert(path, mesh.clone());
+            mesh
+        };
+        let most = Limits::of(self.paths.folder.trust).triangles;
+        take(&mut self.left.triangles, mesh.triangles.len())
+            .ok_or_else(|| super::tree::error(format!("the scene has more than {most} triangles"), origin))?;
+        Ok(mesh)
+    }
+
+    fn read_mesh(
+        &self,
+        file: &str,
+        path: &Path,
+        format: Format,
+    ) -> Result<(Mesh, Vec<Diagnostic>), Diagnostic> {
+        let memory = self.paths.folder.memory;
+        match (self.paths.folder.embedded(file), format) {
+            (Some(text), _) => obj::read_obj(text.as_bytes(), file).map(|read| (read.mesh, read.warnings)),
+            (None, Format::Obj) => obj::load_obj_within(path, memory).map(|read| (read.mesh, read.warnings)),
+            (None, Format::Ply) => ply::load(path, memory).map(|read| (read.mesh, read.warnings)),
+        }
+    }
+
+    /// The image of a file that is named at `origin`.
+    pub(super) fn image(&mut self, file: &str, origin: &Origin) -> Result<ImageId, Diagnostic> {
+        let path = self.path("image", file, origin)?;
+        if let Some(id) = self.images.get(&path) {
+            return Ok(*id);
+        }
+        let placed = |e: Diagnostic| if e.origin.is_some() { e } else { e.at(Some(origin.clone())) };
+        let read = image::read_within(&path, self.left.pixels, self.paths.folder.memory).map_err(placed)?;
+        self.left.pixels -= read.image.pixels.len() as u64;
+        read.warnings.into_iter().for_each(|w| self.push(placed(w)));
+        let id = self.description.add_image(read.image);
+        self.images.insert(path, id);
+        Ok(id)
+    }
+
+    /// Adds a material that is described at `origin`.
+    pub(super) fn add_material(&mut self, kind: MaterialKind, origin: &Origin) -> MaterialId {
+        let id = MaterialId(self.description.materials.len() as u32);
+        self.description.materials.push(Material { kind, origin: Some(origin.clone()) });
+        id
+    }
+
+    /// The material of shapes that name none.
+    pub(super) fn default_material(&mut self) -> MaterialId {
+        let albedo = Rgb::splat(0.5).into();
+        let description = &mut self.description;
+        *self
+            .default_material
+            .get_or_insert_with(|| description.add_material(MaterialKind::Diffuse { albedo }))
+    }
+}
+
+/// Formats of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Obj,
+    Ply,
+}

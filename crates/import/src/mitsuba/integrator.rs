@@ -1,0 +1,113 @@
+//! `<integrator>`.
+
+use caustica_scene::Diagnostic;
+use caustica_scene::description::{Integrator, Technique};
+
+use super::class::Class;
+use super::context::Context;
+use super::fields::Fields;
+
+/// What a scene that names none is rendered by.
+pub(super) const USUAL: Integrator = Integrator::Path(Technique::Mis);
+
+const INTEGRATORS: &[&str] =
+    &["path", "direct", "ptracer", "bdpt", "volpath", "volpathmis", "moment", "aov", "depth"];
+
+/// What has no counterpart, and is close enough to path tracing.
+const SHOWN_PATH: &[&str] = &[
+    "volpath",
+    "volpathmis",
+    "volpath_simple",
+    "prb",
+    "prb_basic",
+    "prb_projective",
+    "prbvolpath",
+    "direct_projective",
+    "direct_reparam",
+    "prb_reparam",
+    "stokes",
+    "photonmapper",
+    "ppm",
+    "sppm",
+    "vpl",
+    "pssmlt",
+    "mlt",
+    "erpt",
+    "adaptive",
+    "irrcache",
+    "multichannel",
+];
+
+pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
+    let mut fields = Fields::new(cx.tree, index);
+    let plugin = fields.plugin();
+    if let "moment" | "aov" | "stokes" | "adaptive" | "irrcache" | "multichannel" = plugin
+        && let Some((_, inner)) = fields.children(Class::Integrator).first()
+    {
+        fields.warn(format!("the {} is not supported; what is inside of it is rendered", fields.title()));
+        fields.ignore(&["aovs", "img"]);
+        fields.finish(cx);
+        return read(*inner, cx);
+    }
+    cx.description.integrator = match plugin {
+        "path" => USUAL,
+        "direct" => {
+            cx.max_depth = Some(2);
+            direct(&mut fields)?
+        }
+        "ptracer" => Integrator::Light,
+        "bdpt" => Integrator::Bdpt,
+        "depth" => Integrator::Depth,
+        known if SHOWN_PATH.contains(&known) => {
+            fields.warn(format!("the {} is not supported; `path` is used instead", fields.title()));
+            USUAL
+        }
+        _ => return Err(fields.unknown_plugin(INTEGRATORS)),
+    };
+    depths(&mut fields, cx)?;
+    if fields.boolean("hide_emitters", false)? {
+        fields.warn("`hide_emitters` is not supported yet; lamps are seen");
+    }
+    // How much is done at a time, by which strategies of their own.
+    fields.ignore(&[
+        "samples_per_pass",
+        "block_size",
+        "timeout",
+        "light_image",
+        "sample_direct",
+        "strict_normals",
+    ]);
+    if plugin != "direct" && SHOWN_PATH.contains(&plugin) {
+        fields.take_rest();
+    }
+    fields.finish(cx);
+    Ok(())
+}
+
+/// The most edges of a path: as here, 1 is lamps seen directly, 2 adds direct light; −1 is no limit.
+fn depths(fields: &mut Fields, cx: &mut Context) -> Result<(), Diagnostic> {
+    let most = i64::from(u32::MAX);
+    match fields.integer("max_depth", -1..=most)? {
+        None | Some(-1) => {}
+        Some(0) => {
+            fields.warn("`max_depth` 0 is a black picture; it is rendered with 1");
+            cx.max_depth = Some(1);
+        }
+        Some(depth) => cx.max_depth = Some(depth as u32),
+    }
+    cx.roulette_start = fields.integer("rr_depth", 0..=most)?.map(|depth| depth as u32);
+    Ok(())
+}
+
+/// Numbers of samples of lamps and of materials matter here only where they are zero.
+fn direct(fields: &mut Fields) -> Result<Integrator, Diagnostic> {
+    let both = fields.integer("shading_samples", 0..=i64::from(u32::MAX))?.unwrap_or(1);
+    let mut count = |name| Ok(fields.integer(name, 0..=i64::from(u32::MAX))?.unwrap_or(both));
+    let (lamps, materials) = (count("emitter_samples")?, count("bsdf_samples")?);
+    match (lamps, materials) {
+        (0, 0) => Err(fields.error("the integrator has neither samples of lamps nor of materials")),
+        (0, _) => Ok(Integrator::Direct(Technique::Materials)),
+        (_, 0) => Ok(Integrator::Direct(Technique::Emitters)),
+        _ => Ok(Integrator::Direct(Technique::Mis)),
+    }
+}

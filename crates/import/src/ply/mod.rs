@@ -1,0 +1,69 @@
+//! Stanford PLY files: text, and binary in both byte orders.
+//!
+//! Read are the positions, normals and texture coordinates of `vertex` and the corners of `face`; other elements and
+//! properties are skipped. Faces may have any number of corners.
+
+mod body;
+mod header;
+
+use std::path::Path;
+
+use caustica_scene::description::Mesh;
+use caustica_scene::memory::shortage;
+use caustica_scene::{Diagnostic, MemoryLimit, Origin};
+
+use crate::files;
+
+/// The most bytes that a file may have.
+const LARGEST_FILE: u64 = 1 << 36;
+
+/// A mesh and what is worth knowing about its file.
+#[derive(Clone, Debug)]
+pub struct PlyMesh {
+    /// The mesh. Texture coordinates are as in the file.
+    pub mesh: Mesh,
+    /// What was left out.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What is wrong with a file, in which line, if lines are known.
+struct Fault {
+    message: String,
+    line: u32,
+}
+
+fn fault<T>(message: impl Into<String>, line: u32) -> Result<T, Fault> {
+    Err(Fault { message: message.into(), line })
+}
+
+/// Reads a PLY file in so much memory.
+pub(crate) fn load(path: &Path, memory: MemoryLimit) -> Result<PlyMesh, Diagnostic> {
+    let name = path.display().to_string();
+    let unreadable = |why| Diagnostic::error(format!("cannot read the mesh `{name}`: {why}"));
+    let (file, size) = files::open(path).map_err(unreadable)?;
+    drop(file);
+    // The file, its mesh, and the copy of it that other shapes of the same file are made from.
+    memory
+        .check(size.saturating_mul(3))
+        .map_err(|e| shortage(&format!("the mesh `{name}`"), e).hint("use a mesh of fewer triangles"))?;
+    let bytes = files::read(path, LARGEST_FILE).map_err(unreadable)?;
+    read_ply(&bytes, &name)
+}
+
+/// Reads a PLY file; `file_name` is for messages.
+pub fn read_ply(bytes: &[u8], file_name: &str) -> Result<PlyMesh, Diagnostic> {
+    let origin = |line| Some(Origin { file: file_name.to_owned(), line, column: 0, span: None });
+    let read = || {
+        let header = header::parse(bytes)?;
+        body::read(&header, &bytes[header.length..])
+    };
+    match read() {
+        Ok((mesh, 0)) => Ok(PlyMesh { mesh, warnings: Vec::new() }),
+        Ok((mesh, left_out)) => {
+            let message =
+                format!("{left_out} faces have fewer than three corners or no area; they are left out");
+            Ok(PlyMesh { mesh, warnings: vec![Diagnostic::warning(message).at(origin(1))] })
+        }
+        Err(Fault { message, line }) => Err(Diagnostic::error(message).at(origin(line.max(1)))),
+    }
+}
