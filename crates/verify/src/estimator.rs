@@ -82,6 +82,11 @@ impl Estimator {
         (0..=class.edges()).any(made)
     }
 
+    /// Whether it splats light paths.
+    pub fn splats(&self) -> bool {
+        self.strategies.touched().splat
+    }
+
     /// By how much more often all strategies together make a path than this estimator does, given the weights that all
     /// strategies have for it, roulette aside. Infinite if it never does.
     pub fn rarity(&self, weights: &[f32]) -> f64 {

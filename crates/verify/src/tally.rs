@@ -282,7 +282,10 @@ impl Sink for Probe<'_, '_> {
         }
         for (i, estimator) in self.estimators.iter().enumerate().filter(|(i, _)| reach >> i & 1 != 0) {
             let rarity = estimator.rarity(c.weights).min(RAREST);
-            for &(block, part) in &self.parts {
+            // What a light path spreads over pixels, eye paths find whole in some of them.
+            let whole = c.strategy.t == 1 && !estimator.splats();
+            for &(block, part) in self.parts.iter().filter(|p| p.1 != 0.0) {
+                let rarity = if whole { rarity / part.abs().min(1.0) } else { rarity };
                 self.learned.expected[i].add(block, luminance * part, rarity);
             }
         }

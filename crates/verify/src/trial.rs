@@ -139,6 +139,10 @@ pub fn compare(estimate: &Side, reference: &Side) -> Option<Trial> {
 /// Hall's transformation of a statistic that is not negative, towards zero.
 fn tempered(t: f64, skewness: f64) -> f64 {
     let g = skewness;
+    if g == 0.0 {
+        // Also of what cannot be by chance.
+        return t;
+    }
     (t - g / 6.0 - g * t * t / 3.0 + g * g * t * t * t / 27.0).clamp(0.0, t)
 }
 
@@ -157,6 +161,7 @@ mod tests {
     fn equal_constants_agree_and_others_do_not() {
         let constant = |v: f64| side(&[v; 8]);
         assert_eq!(compare(&constant(1.0), &constant(1.0)).unwrap().p, 1.0);
+        assert_eq!(compare(&constant(1.0), &constant(0.0)).unwrap().p, 0.0);
         assert!(compare(&constant(1.1), &constant(1.0)).unwrap().p < 1e-9);
         assert!(compare(&constant(0.9), &constant(1.0)).unwrap().t < -100.0);
         assert_eq!(compare(&constant(0.0), &constant(0.0)), None);

@@ -49,6 +49,31 @@ fn ball_in_a_mirror(lamp: impl FnOnce(&mut Description)) -> Description {
     d
 }
 
+/// What is counted is what the picture has, also with a filter that reaches beyond a pixel and with lamps just outside
+/// of the frame: of the whole picture, and of a region.
+#[test]
+fn the_light_is_that_of_the_picture() {
+    let mut d = dark_box();
+    let m = diffuse(&mut d, 0.5);
+    let lamp = sphere(&mut d, [-0.55, 0.55, -0.4], 0.25, m);
+    emit(&mut d, lamp, 20.0);
+    look(&mut d, [0.0, 0.0, -1.9], [0.1, -0.1, 0.0]);
+    (d.film.width, d.film.height) = (16, 16);
+    d.film.filter = caustica_math::Filter::Tent { radius: 2.0 };
+    let scene = flatten(d.clone());
+    let options = caustica_render::RenderOptions { samples: 256, settings: to(4), ..Default::default() };
+    let session = caustica_render::Session::new(&scene, options).unwrap();
+    session.run(&Control::default(), |_| ()).unwrap();
+    let picture = session.film().develop();
+    for region in [Crop { x: 0, y: 0, width: 16, height: 16 }, Crop { x: 0, y: 0, width: 3, height: 4 }] {
+        let pixels = (0..region.height).flat_map(|y| (0..region.width).map(move |x| (y * 16 + x) as usize));
+        let sum: f64 = pixels.map(|i| f64::from((picture.eye[i] + picture.light[i]).luminance())).sum();
+        let mean = sum / f64::from(region.width * region.height);
+        let told = ask(d.clone(), to(4), Some(region)).mean;
+        assert!((told / mean - 1.0).abs() < 0.05, "{region:?}: {told} for {mean}");
+    }
+}
+
 #[test]
 fn light_that_no_strategy_reaches_is_estimated_and_named() {
     let point = ball_in_a_mirror(|d| point_light(d, [0.0, 2.5, 0.5], 2.0));

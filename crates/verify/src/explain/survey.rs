@@ -87,7 +87,7 @@ impl Survey {
         let settings = Settings {
             integrator: Integrator::Bdpt,
             strategies: StrategySet::default(),
-            max_depth: limit.map(|d| d + BEYOND),
+            max_depth: limit.map(|d| d.saturating_add(BEYOND)),
             ..question.settings.clone()
         };
         let kernel = Kernel::new(scene, settings.clone());
@@ -97,10 +97,11 @@ impl Survey {
         let work = |part: usize| {
             let mut scratch = Scratch::default();
             let survey = Self::default();
-            let mut listener = Listener { kernel: &kernel, region, limit, survey };
+            let mut listener = Listener { kernel: &kernel, region, limit, survey, pixel: [0; 2] };
             for pass in 0..passes {
                 let sample = part as u32 * passes + pass;
                 for pixel in pixels(scene.film.window()) {
+                    listener.pixel = pixel;
                     kernel.sample(pixel, sample, &mut scratch, &mut listener);
                     if pass == 0 {
                         let paths = looking.subpaths(pixel, sample, &mut scratch);
@@ -189,6 +190,36 @@ struct Listener<'k, 's> {
     /// The most edges that the picture's paths have.
     limit: Option<u32>,
     survey: Survey,
+    /// The pixel whose sample is looked at.
+    pixel: [u32; 2],
+}
+
+impl Listener<'_, '_> {
+    /// How much of a contribution the region gets.
+    fn share(&self, c: &Contribution<'_>) -> f32 {
+        if c.strategy.t != 1 {
+            return if is_inside(self.region, self.pixel) { c.filter_weight } else { 0.0 };
+        }
+        let (camera, filter) = (&self.kernel.scene().camera, self.kernel.filter());
+        if camera.wraps() {
+            return camera.aliases(c.film, filter.radius()).map(|film| self.splat_share(film)).sum();
+        }
+        self.splat_share(c.film)
+    }
+
+    /// The filter's sum over the region's pixels around a film position.
+    fn splat_share(&self, film: Vec2) -> f32 {
+        let (filter, Crop { x, y, width, height }) = (self.kernel.filter(), self.region);
+        let along = |at: f32, start: u32, count: u32| -> f32 {
+            let first = (at - filter.radius() - 1.0).max(start as f32) as u32;
+            let last = (at + filter.radius() + 1.0).min((start + count) as f32).max(0.0) as u32;
+            (first..last.min(start + count)).map(|i| filter.eval_axis(i as f32 + 0.5 - at)).sum()
+        };
+        if !(film.x.is_finite() && film.y.is_finite()) {
+            return 0.0;
+        }
+        along(film.x, x, width) * along(film.y, y, height)
+    }
 }
 
 impl Sink for Listener<'_, '_> {
@@ -199,9 +230,9 @@ impl Sink for Listener<'_, '_> {
     fn splat(&mut self, _: Vec2, _: Rgb) {}
 
     fn contribution(&mut self, c: &Contribution<'_>) {
-        let pixel = [c.film.x, c.film.y].map(|x| x.max(0.0) as u32);
-        let luminance = f64::from(self.kernel.rgb(c.unweighted * c.weight).luminance());
-        if !luminance.is_finite() || !is_inside(self.region, pixel) {
+        let share = self.share(c);
+        let luminance = f64::from(self.kernel.rgb(c.unweighted * (c.weight * share)).luminance());
+        if !luminance.is_finite() || share == 0.0 {
             return;
         }
         let class = PathClass::of(self.kernel.scene(), c);
