@@ -134,7 +134,7 @@ fn summary(told: &Told<'_>) -> String {
         let missed = if p.missed_by.is_empty() {
             "reached by all".to_owned()
         } else {
-            format!("missed by {}", p.missed_by.join(", "))
+            format!("missed by {}", p.missed_by.join("; "))
         };
         text += &format!("  {:<16} {:>6} from {}: {missed}\n", p.pattern, percent(p.share), p.lamp);
     }

@@ -97,6 +97,9 @@ fn words(tested: &Tested) -> String {
             format!("{} values are no numbers", tested.picture.invalid)
         }
         Verdict::Mismatch => "differs".to_owned(),
+        Verdict::Agrees if tested.untested > 0.05 => {
+            format!("agrees where tested ({:.0} % of its light)", 100.0 * (1.0 - tested.untested))
+        }
         Verdict::Agrees => "agrees".to_owned(),
         Verdict::TooNoisy => "too noisy to test".to_owned(),
         Verdict::NothingToReach => "reaches no light here".to_owned(),
