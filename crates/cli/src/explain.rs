@@ -5,13 +5,15 @@ use std::process::ExitCode;
 use caustica::description::{Crop, Integrator};
 use caustica_verify::{Explanation, Question, explain};
 
+use caustica_report::percent;
+
 use crate::args::Explain;
 use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::progress::Bar;
 use crate::render::integrator;
-use crate::verify::{open_small, percent};
+use crate::verify::open_small;
 
 /// Rows of the table.
 const ROWS: usize = 12;

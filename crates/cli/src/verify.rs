@@ -8,7 +8,7 @@ use caustica::Scene;
 use caustica::description::Integrator;
 use caustica::film::check_writable;
 use caustica::session::available_threads;
-use caustica_report::{Verification, write_verification};
+use caustica_report::{Verification, percent, write_verification};
 use caustica_verify::{Options, Outcome, VerifyError, heat_map, verification, verify};
 use serde::Serialize;
 
@@ -140,14 +140,4 @@ fn summary(told: &Told<'_>) -> String {
     }
     text += &format!("\n{}\n", told.verification.verdict);
     text + &format!("wrote {}", told.outputs.join(", "))
-}
-
-/// A share as people read it.
-pub fn percent(share: f64) -> String {
-    match share {
-        s if s <= 0.0 => "0 %".to_owned(),
-        s if s < 0.001 => "< 0.1 %".to_owned(),
-        s if s < 0.0995 => format!("{:.1} %", 100.0 * s),
-        s => format!("{:.0} %", 100.0 * s),
-    }
 }

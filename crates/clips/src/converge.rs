@@ -110,7 +110,7 @@ fn budget(render: &RenderOptions, done: u32, (frames, seconds): (u32, f64)) -> B
 }
 
 fn develop(session: &Session<'_>, options: &ClipOptions, seconds: f64) -> Result<Shown, ClipError> {
-    let picture: Picture = session.film().develop();
+    let picture: Picture = session.film().develop_without_bars();
     let size = [picture.window.width, picture.window.height];
     let samples = picture.eye_samples.max(picture.light_samples);
     let show = |light_image| options.show(&picture.combined(light_image), size);

@@ -65,7 +65,7 @@ fn swing<P: FnMut(Step)>(
         let settings = Settings { seed, ..what.render.settings.clone() };
         let session = Session::new(scene, RenderOptions { settings, ..what.render.clone() })?;
         let report = session.run(control, |_| ())?;
-        let picture = session.film().develop();
+        let picture = session.film().develop_without_bars();
         let Window { width, height, .. } = picture.window;
         let mut canvas = options.show(&picture.combined(LightImage::On), [width, height])?;
         let samples = picture.eye_samples.max(picture.light_samples);

@@ -2,13 +2,11 @@
 
 use std::ops::Range;
 
-use caustica_math::Rgb;
-
 use crate::FilmError;
 use crate::error_bars::ErrorBars;
 use crate::film::{Film, FilmCounts, combine, develop};
 use crate::layout::FilmLayout;
-use crate::picture::Picture;
+use crate::picture::{LightImage, Picture};
 
 /// A film in two half-buffers. Each pass of one sample a pixel goes to one of them, by its number alone, so that the
 /// halves, like their sum, depend on which passes were added and on nothing else.
@@ -136,25 +134,30 @@ impl DualFilm {
     /// The picture so far: each layer divided by its own count, with error bars if there are passes in both halves.
     /// A layer without samples is black.
     pub fn develop(&self) -> Picture {
-        let picture = develop(self.layout(), self.counts(), || self.sums());
         let error = self.error_bars().map(|bars| bars.half_widths());
-        Picture { error, ..picture }
+        Picture { error, ..self.develop_without_bars() }
+    }
+
+    /// The same without error bars, which take longer than all else: for pictures that are only looked at.
+    pub fn develop_without_bars(&self) -> Picture {
+        develop(self.layout(), self.counts(), || self.sums())
     }
 
     /// How far the picture, eye and light image together, may be from the truth. `None` if one half is empty.
     pub fn error_bars(&self) -> Option<ErrorBars> {
-        let pictures = self.halves.each_ref().map(Film::develop);
         let passes = self.halves.each_ref().map(|f| f.eye_samples().max(f.light_samples()));
         if passes.contains(&0) {
             return None;
         }
-        let [a, b] = pictures.map(|p| p.eye.iter().zip(&p.light).map(|(e, l)| *e + *l).collect::<Vec<Rgb>>());
-        Some(ErrorBars::of_halves(self.layout().window, [a, b], passes))
+        let halves = self.halves.each_ref().map(|f| f.develop().combined(LightImage::On));
+        Some(ErrorBars::of_halves(self.layout().window, halves, passes))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use caustica_math::Rgb;
+
     use super::*;
     use crate::Window;
 

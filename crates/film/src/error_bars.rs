@@ -77,7 +77,10 @@ impl ErrorBars {
     /// Half the width of the 95 % interval of each pixel and channel, row by row: the truth lies that near to the
     /// picture, but for about one pixel in twenty.
     pub fn half_widths(&self) -> Vec<Rgb> {
-        let channels = [0, 1, 2].map(|c| self.channel(c));
+        // Of pools that the border cuts off, too.
+        let cells = 1..=(2 * POOL + 1) * (2 * POOL + 1);
+        let quantiles: Vec<f64> = cells.map(|n| t_quantile(0.025, n as f64)).collect();
+        let channels = [0, 1, 2].map(|c| self.channel(c, &quantiles));
         (0..self.mean.len()).map(|i| Rgb(channels.each_ref().map(|w| w[i]))).collect()
     }
 
@@ -85,7 +88,8 @@ impl ErrorBars {
         [self.window.width as usize, self.window.height as usize]
     }
 
-    fn channel(&self, c: usize) -> Vec<f32> {
+    /// The half widths of a channel, with the quantiles of pools by their number of pixels less one.
+    fn channel(&self, c: usize, quantiles: &[f64]) -> Vec<f32> {
         let size = self.size();
         let brightness: Vec<f64> = self.mean.iter().map(|p| f64::from(p.0[c]).abs()).collect();
         let floor = BLACK * mean(&brightness);
@@ -93,9 +97,6 @@ impl ErrorBars {
             pooled(&brightness, size, SMOOTH).into_iter().map(|x| x.max(floor)).collect();
         let relative = |(v, s): (&Rgb, &f64)| if *s > 0.0 { f64::from(v.0[c]) / (s * s) } else { 0.0 };
         let relative: Vec<f64> = self.variance.iter().zip(&brightness).map(relative).collect();
-        // Of pools that the border cuts off, too.
-        let quantiles: Vec<f64> =
-            (1..=(2 * POOL + 1) * (2 * POOL + 1)).map(|cells| t_quantile(0.025, cells as f64)).collect();
         let quantile = |i: usize| {
             let cells = |at: usize, count: usize| around(at, POOL, count).len();
             quantiles[cells(i % size[0], size[0]) * cells(i / size[0], size[1]) - 1]

@@ -18,7 +18,6 @@ mod quantum;
 mod record;
 mod tonemap;
 
-pub use caustica_math::memory::available as available_memory;
 pub use display::{Develop, write_png, write_srgb_png};
 pub use dual::{DualFilm, half_of};
 pub use error::FilmError;

@@ -1,5 +1,7 @@
 //! No Mitsuba file makes the reader panic, hang or lose the place of an error.
 
+mod common;
+
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -25,41 +27,29 @@ const SCENE: &str = r##"<?xml version="1.0"?>
   <emitter type="point"><rgb name="intensity" value="3 2 1"/></emitter>
 </scene>"##;
 
-/// A change of a text: bytes from one place replaced by others.
-fn edits() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, Vec<u8>)>> {
-    let words = [
-        "<",
-        ">",
-        "/",
-        "\"",
-        "&",
-        "-",
-        "0",
-        "nan",
-        "1e999",
-        "$",
-        "$spp",
-        "id=",
-        "<ref id='g'/>",
-        "<include filename='x'/>",
-        "<shape type='cube'>",
-        "#",
-        ":",
-    ];
-    let fresh = prop_oneof![
-        prop::collection::vec(any::<u8>(), 0..4),
-        prop::sample::select(words.to_vec()).prop_map(|s| s.as_bytes().to_vec()),
-    ];
-    prop::collection::vec((any::<prop::sample::Index>(), 0..6_usize, fresh), 1..5)
-}
+const WORDS: &[&str] = &[
+    "<",
+    ">",
+    "/",
+    "\"",
+    "&",
+    "-",
+    "0",
+    "nan",
+    "1e999",
+    "$",
+    "$spp",
+    "id=",
+    "<ref id='g'/>",
+    "<include filename='x'/>",
+    "<shape type='cube'>",
+    "#",
+    ":",
+];
 
 fn check(text: &str) {
     let Err(error) = parse_mitsuba(text, "s.xml", Path::new("/nowhere"), &[]) else { return };
-    let origin = error.origin.as_ref().unwrap_or_else(|| panic!("no place: {error}"));
-    assert!(origin.line >= 1 && origin.line as usize <= text.matches('\n').count() + 1, "{error}");
-    if let Some((start, length)) = origin.span {
-        assert!(start + length <= text.len() + 1, "{error}");
-    }
+    common::check_place(&error, text);
 }
 
 #[test]
@@ -76,13 +66,8 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn edited_scenes(edits in edits()) {
-        let mut bytes = SCENE.as_bytes().to_vec();
-        for (index, removed, added) in edits {
-            let at = index.index(bytes.len() + 1);
-            let end = (at + removed).min(bytes.len());
-            bytes.splice(at..end, added);
-        }
+    fn edited_scenes(edits in common::edits(WORDS)) {
+        let bytes = common::edited(SCENE, &edits);
         check(&String::from_utf8_lossy(&bytes));
     }
 }

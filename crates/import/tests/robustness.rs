@@ -31,47 +31,12 @@ const SCENE: &str = r#"<?xml version="1.0"?>
 const MESH: &str = "# a mesh\nv 0 0 0\nv 1.5 0 -.5\nv 1 1e0 0\nv 0 1 0\nv .5 .5 .1\nvt 0 0\nvt 1 1\nvn 0 0 1\n\
     f 1/1/1 2/2/1 3/1/1 \\\n 4/2/1\ng x\nf -5//1 -4//1 -1//1\nf 1 2 5 3 4\n";
 
-/// A change of a text: bytes from one place replaced by others.
-fn edits() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, Vec<u8>)>> {
-    let fresh = prop_oneof![
-        prop::collection::vec(any::<u8>(), 0..4),
-        prop::sample::select(vec![
-            "<",
-            ">",
-            "/",
-            "\"",
-            "&",
-            "-",
-            "0",
-            "nan",
-            "1e999",
-            "\\\n",
-            "<!--",
-            "<mesh type='obj'>"
-        ])
-        .prop_map(|s| s.as_bytes().to_vec()),
-    ];
-    prop::collection::vec((any::<prop::sample::Index>(), 0..6_usize, fresh), 1..5)
-}
-
-fn edited(text: &str, edits: &[(prop::sample::Index, usize, Vec<u8>)]) -> Vec<u8> {
-    let mut bytes = text.as_bytes().to_vec();
-    for (index, removed, added) in edits {
-        let at = index.index(bytes.len() + 1);
-        let end = (at + removed).min(bytes.len());
-        bytes.splice(at..end, added.iter().copied());
-    }
-    bytes
-}
+const WORDS: &[&str] =
+    &["<", ">", "/", "\"", "&", "-", "0", "nan", "1e999", "\\\n", "<!--", "<mesh type='obj'>"];
 
 fn check_scene(text: &str) {
     if let Err(error) = parse_nori(text, "s.xml", Path::new("/nowhere")) {
-        let origin = error.origin.as_ref().unwrap_or_else(|| panic!("no place: {error}"));
-        assert!(origin.line >= 1 && origin.line as usize <= text.matches('\n').count() + 1, "{error}");
-        assert!(origin.column >= 1, "{error}");
-        if let Some((start, length)) = origin.span {
-            assert!(start + length <= text.len() + 1, "{error}");
-        }
+        common::check_place(&error, text);
     }
 }
 
@@ -115,13 +80,13 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn edited_scenes(edits in edits()) {
-        check_scene(&String::from_utf8_lossy(&edited(SCENE, &edits)));
+    fn edited_scenes(edits in common::edits(WORDS)) {
+        check_scene(&String::from_utf8_lossy(&common::edited(SCENE, &edits)));
     }
 
     #[test]
-    fn edited_meshes(edits in edits()) {
-        check_mesh(&edited(MESH, &edits));
+    fn edited_meshes(edits in common::edits(WORDS)) {
+        check_mesh(&common::edited(MESH, &edits));
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use caustica_film::{Film, FilmError, Window, available_memory};
-use caustica_math::{Rgb, Vec2};
+use caustica_film::{Film, FilmError, Window};
+use caustica_math::{MemoryLimit, Rgb, Vec2};
 use caustica_scene::Scene;
 use caustica_scene::description::Integrator;
 use caustica_transport::strategy::Strategy;
@@ -57,7 +57,7 @@ impl<'a> Pyramid<'a> {
         let layout = film_layout(scene, &settings.integrator);
         let strategies = u64::from(edges * (edges + 3) / 2);
         let needed = layout.window.pixels().saturating_mul(2 * BYTES * (strategies + 1));
-        if available_memory().is_some_and(|available| needed > available) {
+        if MemoryLimit::Machine.check(needed).is_err() {
             let Window { width, height, .. } = layout.window;
             return Err(FilmError::too_large(width, height, needed).into());
         }

@@ -54,7 +54,7 @@ impl Session<'_> {
             let done = self.samples();
             // A film that was quiet enough when it was interrupted stays as it is.
             let look = match stages.noise {
-                Some(most) if is_look(done) && self.is_quiet(most) => done,
+                Some(most) if is_look(done) && self.is_quiet(self.noise(), most) => done,
                 Some(_) => next_look(done),
                 None => u64::MAX,
             };
@@ -66,10 +66,11 @@ impl Session<'_> {
                 progress(&overall(p, start.elapsed(), asked));
             })?;
             let report = self.total(report, start.elapsed(), before);
-            let quiet = report.samples >= look && stages.noise.is_some_and(|most| self.is_quiet(most));
+            let noise = if report.samples >= look { self.noise() } else { None };
+            let quiet = report.samples >= look && stages.noise.is_some_and(|most| self.is_quiet(noise, most));
             let late = whole.time.is_some_and(|t| start.elapsed() >= t);
             if quiet || late || report.stopped || report.samples >= u64::from(whole.samples) {
-                return Ok(Report { noise: self.noise(), ..report });
+                return Ok(Report { noise: noise.or_else(|| self.noise()), ..report });
             }
             if stages.every.is_some_and(|t| saved.elapsed() >= t) {
                 save(&report);
@@ -79,8 +80,8 @@ impl Session<'_> {
     }
 
     /// Whether the noise is no more than that; where there is no light, when it has been looked for long enough.
-    fn is_quiet(&self, most: f64) -> bool {
-        self.noise().map_or(self.samples() >= DARK, |noise| noise <= most)
+    fn is_quiet(&self, noise: Option<f64>, most: f64) -> bool {
+        noise.map_or(self.samples() >= DARK, |noise| noise <= most)
     }
 
     /// The relative error of the whole film, if it is known.

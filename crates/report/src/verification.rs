@@ -124,7 +124,8 @@ impl<'a> Row<'a> {
     }
 }
 
-fn percent(share: f64) -> String {
+/// A share as people read it.
+pub fn percent(share: f64) -> String {
     match share {
         s if s <= 0.0 => "0 %".to_owned(),
         s if s < 0.001 => "< 0.1 %".to_owned(),

@@ -200,10 +200,12 @@ impl<'a> Kernel<'a> {
     /// Gives the sample's value to its pixel, or tells that it is none.
     #[inline]
     pub(crate) fn deliver<S: Sink>(&self, value: Spectrum, filter_weight: f32, sink: &mut S) {
-        if !value.is_valid() {
+        let value = if value.is_valid() {
+            value
+        } else {
             sink.invalid();
-        }
-        let value = if value.is_valid() { value } else { Spectrum::ZERO };
+            Spectrum::ZERO
+        };
         sink.eye(self.wavelengths.rgb(value * filter_weight));
     }
 

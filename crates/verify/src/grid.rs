@@ -3,6 +3,7 @@
 use caustica_math::filter::PixelFilter;
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
+use caustica_scene::camera::Camera;
 use caustica_scene::description::Crop;
 
 /// What is known of a block takes up to a quarter of a megabyte.
@@ -84,6 +85,20 @@ impl Grid {
                     tell(pixel, value);
                 }
             }
+        }
+    }
+
+    /// The same at every film position that shows the same place.
+    pub fn each_splatted(
+        &self,
+        (camera, filter): (&Camera, &PixelFilter),
+        film: Vec2,
+        mut tell: impl FnMut(usize, f32),
+    ) {
+        if camera.wraps() {
+            camera.aliases(film, filter.radius()).for_each(|film| self.each_seen(filter, film, &mut tell));
+        } else {
+            self.each_seen(filter, film, tell);
         }
     }
 

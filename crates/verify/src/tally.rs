@@ -230,19 +230,14 @@ impl Probe<'_, '_> {
     fn find_parts(&mut self, film: Vec2) {
         let (grid, parts) = (self.render.grid, &mut self.parts);
         parts.clear();
-        let mut add = |pixel, value| {
+        let kernel = self.render.kernel;
+        grid.each_splatted((&kernel.scene().camera, kernel.filter()), film, |pixel, value| {
             let (block, value) = (grid.block_of(pixel), f64::from(value));
             match parts.iter_mut().find(|p| p.0 == block) {
                 Some(part) => part.1 += value,
                 None => parts.push((block, value)),
             }
-        };
-        let (camera, filter) = (&self.render.kernel.scene().camera, self.render.kernel.filter());
-        if camera.wraps() {
-            camera.aliases(film, filter.radius()).for_each(|film| grid.each_seen(filter, film, &mut add));
-        } else {
-            grid.each_seen(filter, film, &mut add);
-        }
+        });
     }
 }
 

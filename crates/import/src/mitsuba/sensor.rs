@@ -10,6 +10,7 @@ use super::class::Class;
 use super::context::Context;
 use super::fields::Fields;
 use super::tree::error;
+use crate::nori::camera::{self, LONGEST_SIDE};
 use crate::nori::range::Bounds;
 
 const SENSORS: &[&str] = &["perspective", "thinlens", "orthographic"];
@@ -18,9 +19,6 @@ const FILTERS: &[&str] = &["box", "tent", "gaussian", "mitchell", "catmullrom", 
 const SAMPLERS: &[&str] =
     &["independent", "stratified", "multijitter", "orthogonal", "ldsampler", "halton", "hammersley", "sobol"];
 
-/// The most pixels on a side of the picture, and in all of it.
-const LONGEST_SIDE: i64 = 1 << 16;
-const MOST_PIXELS: u64 = 1 << 28;
 /// The widest filter: every sample is added to all pixels that it covers.
 const WIDEST_FILTER: f64 = 32.0;
 
@@ -132,7 +130,7 @@ fn read_film(index: usize, cx: &mut Context) -> Result<FilmSettings, Diagnostic>
     if let Some(filter) = fields.child(Class::Filter)? {
         film.filter = read_filter(filter, cx)?;
     }
-    check(&film).map_err(|message| fields.error(message))?;
+    camera::check_film(&film).map_err(|message| fields.error(message))?;
     // How files are written is said by the command line.
     fields.ignore(&[
         "file_format",
@@ -158,25 +156,7 @@ fn crop(fields: &mut Fields, film: &FilmSettings) -> Result<Option<Crop>, Diagno
     let y = fields.integer("crop_offset_y", 0..=LONGEST_SIDE)?;
     let width = fields.integer("crop_width", 1..=LONGEST_SIDE)?;
     let height = fields.integer("crop_height", 1..=LONGEST_SIDE)?;
-    if x.or(y).or(width).or(height).is_none() {
-        return Ok(None);
-    }
-    let (x, y) = (x.unwrap_or(0) as u32, y.unwrap_or(0) as u32);
-    let width = width.map_or(film.width.saturating_sub(x), |w| w as u32);
-    let height = height.map_or(film.height.saturating_sub(y), |h| h as u32);
-    Ok(Some(Crop { x, y, width, height }))
-}
-
-fn check(film: &FilmSettings) -> Result<(), String> {
-    let (width, height) = (film.width, film.height);
-    if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        return Err(format!("{width} × {height} pixels are more than the {MOST_PIXELS} that are possible"));
-    }
-    let crop = film.window();
-    if crop.width == 0 || crop.height == 0 || crop.x + crop.width > width || crop.y + crop.height > height {
-        return Err(format!("the crop window leaves the picture of {width} × {height} pixels"));
-    }
-    Ok(())
+    Ok(camera::crop(film, [x, y, width, height]))
 }
 
 fn read_filter(index: usize, cx: &mut Context) -> Result<Filter, Diagnostic> {

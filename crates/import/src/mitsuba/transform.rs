@@ -6,6 +6,7 @@ use roxmltree::Node;
 
 use super::file::{File, Variables, tag_range};
 use super::value;
+use crate::nori::transform::{affine, hint};
 use crate::nori::value::{Bad, numbers};
 use crate::suggest;
 
@@ -31,16 +32,6 @@ pub(super) fn parse(file: &File, node: Node, variables: &mut Variables) -> Resul
         return Err(file.error("this transform cannot be inverted", tag_range(node)));
     }
     Ok(transform)
-}
-
-fn hint(tag: &str) -> &'static str {
-    match tag {
-        "scale" => "no factor may be zero",
-        "rotate" => "the axis may not be zero",
-        "matrix" => "the matrix is singular",
-        "translate" => "the numbers are too large",
-        _ => "origin and target must differ, and up may not be parallel to the line between them",
-    }
 }
 
 fn operation(file: &File, node: Node, variables: &mut Variables) -> Result<Transform, Diagnostic> {
@@ -73,30 +64,18 @@ fn operation(file: &File, node: Node, variables: &mut Variables) -> Result<Trans
 
 /// Sixteen numbers in rows; or nine, without the last row and the last column.
 fn matrix(text: &str) -> Result<Transform, Bad> {
-    let mut m = numbers(text, 9..=16)?;
-    match m.len() {
-        9 => {
-            m.insert(3, 0.0);
-            m.insert(7, 0.0);
-            m.extend([0.0, 0.0, 0.0, 0.0, 1.0]);
+    let m = numbers(text, 9..=16)?;
+    let m = match <[f64; 16]>::try_from(m) {
+        Ok(whole) => whole,
+        Err(m) if m.len() == 9 => {
+            [m[0], m[1], m[2], 0.0, m[3], m[4], m[5], 0.0, m[6], m[7], m[8], 0.0, 0.0, 0.0, 0.0, 1.0]
         }
-        16 => {}
-        n => {
-            return Err(Bad {
-                message: format!("expected 9 or 16 numbers and found {n}"),
-                range: 0..text.len(),
-            });
+        Err(m) => {
+            let message = format!("expected 9 or 16 numbers and found {}", m.len());
+            return Err(Bad { message, range: 0..text.len() });
         }
-    }
-    if m[12..] != [0.0, 0.0, 0.0, 1.0] {
-        // Under a projective map neither normals nor distances along rays mean anything.
-        return Err(Bad {
-            message: "the last row of the matrix must be 0 0 0 1".into(),
-            range: 0..text.len(),
-        });
-    }
-    let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
-    Ok(Transform::from_rows([row(0), row(1), row(2), row(3)]))
+    };
+    affine(m, text)
 }
 
 fn look_at(file: &File, node: Node, variables: &mut Variables) -> Result<Transform, Diagnostic> {

@@ -6,7 +6,7 @@ use roxmltree::Node;
 use super::file::{File, Text, Variables};
 use super::spectrum::Curve;
 use super::tree::Value;
-use crate::nori::value::{Bad, numbers};
+use crate::nori::value::{Bad, boolean, float, integer, numbers};
 use crate::suggest;
 
 /// Tags of properties other than transforms.
@@ -43,25 +43,10 @@ pub(super) fn parse(file: &File, node: Node, variables: &mut Variables) -> Resul
 }
 
 fn scalar(tag: &str, text: &str) -> Result<Value, Bad> {
-    let bad = |what: &str| {
-        let message = format!("`{}` is not {what}", suggest::shorten(text));
-        Err(Bad { message, range: 0..text.len() })
-    };
-    let word = text.trim();
     Ok(match tag {
-        "boolean" => match word.to_ascii_lowercase().as_str() {
-            "true" => Value::Boolean(true),
-            "false" => Value::Boolean(false),
-            _ => return bad("a boolean (true or false)"),
-        },
-        "integer" => match word.parse() {
-            Ok(integer) => Value::Integer(integer),
-            Err(_) => return bad("an integer"),
-        },
-        "float" => match word.parse::<f64>() {
-            Ok(float) if !float.is_nan() => Value::Float(float),
-            _ => return bad("a number"),
-        },
+        "boolean" => Value::Boolean(boolean(text)?),
+        "integer" => Value::Integer(integer(text)?),
+        "float" => Value::Float(float(text)?),
         "rgb" => Value::Rgb(rgb(text)?),
         "srgb" => Value::Rgb(rgb(text)?.map(decode)),
         "spectrum" => Value::Spectrum(Curve::parse(text)?),

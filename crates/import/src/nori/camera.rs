@@ -10,7 +10,7 @@ use super::range::Bounds;
 use super::tree::Object;
 
 /// The most pixels on a side of the picture, and in all of it.
-const LONGEST_SIDE: i64 = 1 << 16;
+pub(crate) const LONGEST_SIDE: i64 = 1 << 16;
 const MOST_PIXELS: u64 = 1 << 28;
 
 const CAMERAS: &[&str] =
@@ -75,11 +75,8 @@ fn film_properties(fields: &mut Fields, film: &mut FilmSettings, cx: &mut Contex
     let y = fields.integer(&["cropOffsetY"], 0..=LONGEST_SIDE)?;
     let width = fields.integer(&["cropWidth"], 1..=LONGEST_SIDE)?;
     let height = fields.integer(&["cropHeight"], 1..=LONGEST_SIDE)?;
-    if x.or(y).or(width).or(height).is_some() {
-        let (x, y) = (x.unwrap_or(0) as u32, y.unwrap_or(0) as u32);
-        let width = width.map_or(film.width.saturating_sub(x), |w| w as u32);
-        let height = height.map_or(film.height.saturating_sub(y), |h| h as u32);
-        film.crop = Some(Crop { x, y, width, height });
+    if let Some(window) = crop(film, [x, y, width, height]) {
+        film.crop = Some(window);
     }
     if let Some(object) = fields.child(Class::Filter)? {
         film.filter = filter(object, cx)?;
@@ -87,7 +84,17 @@ fn film_properties(fields: &mut Fields, film: &mut FilmSettings, cx: &mut Contex
     Ok(())
 }
 
-fn check_film(film: &FilmSettings) -> Result<(), String> {
+/// The crop window of these offsets and sizes, if any is given: those that are not reach to the borders.
+pub(crate) fn crop(film: &FilmSettings, [x, y, width, height]: [Option<i64>; 4]) -> Option<Crop> {
+    x.or(y).or(width).or(height)?;
+    let (x, y) = (x.unwrap_or(0) as u32, y.unwrap_or(0) as u32);
+    let width = width.map_or(film.width.saturating_sub(x), |w| w as u32);
+    let height = height.map_or(film.height.saturating_sub(y), |h| h as u32);
+    Some(Crop { x, y, width, height })
+}
+
+/// Whether a film's size and its crop window can be.
+pub(crate) fn check_film(film: &FilmSettings) -> Result<(), String> {
     let (width, height) = (film.width, film.height);
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
         return Err(format!("{width} × {height} pixels are more than the {MOST_PIXELS} that are possible"));

@@ -5,7 +5,7 @@
 //! nobody asked for.
 
 mod bsdf;
-mod camera;
+pub(crate) mod camera;
 mod class;
 mod context;
 pub(crate) mod document;
@@ -17,7 +17,7 @@ mod scene;
 mod shape;
 mod test;
 mod texture;
-mod transform;
+pub(crate) mod transform;
 mod tree;
 pub(crate) mod value;
 

@@ -32,7 +32,8 @@ pub(super) fn parse(place: Place, node: Node) -> Result<Transform, Diagnostic> {
     Ok(transform)
 }
 
-fn hint(tag: &str) -> &'static str {
+/// What may be wrong with an operation that cannot be inverted.
+pub(crate) fn hint(tag: &str) -> &'static str {
     match tag {
         "scale" => "no factor may be zero",
         "rotate" => "the axis may not be zero",
@@ -65,22 +66,20 @@ fn operation(place: Place, node: Node) -> Result<Transform, Diagnostic> {
             let [angle] = read(place, node, "angle", value::array::<1>)?;
             Transform::rotate(angle, triple("axis")?)
         }
-        "matrix" => {
-            let m = read(place, node, "value", affine)?;
-            let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
-            Transform::from_rows([row(0), row(1), row(2), row(3)])
-        }
+        "matrix" => read(place, node, "value", |text| affine(value::array(text)?, text))?,
         _ => Transform::look_at(triple("origin")?, triple("target")?, triple("up")?),
     })
 }
 
-fn affine(text: &str) -> Result<[f64; 16], Bad> {
-    let m = value::array(text)?;
-    if m[12..] == [0.0, 0.0, 0.0, 1.0] {
-        return Ok(m);
+/// The transform of a matrix in rows, of which `text` tells.
+pub(crate) fn affine(m: [f64; 16], text: &str) -> Result<Transform, Bad> {
+    if m[12..] != [0.0, 0.0, 0.0, 1.0] {
+        // Under a projective map neither normals nor distances along rays mean anything.
+        let message = "the last row of the matrix must be 0 0 0 1".into();
+        return Err(Bad { message, range: 0..text.len() });
     }
-    // Under a projective map neither normals nor distances along rays mean anything.
-    Err(Bad { message: "the last row of the matrix must be 0 0 0 1".into(), range: 0..text.len() })
+    let row = |i: usize| [m[4 * i], m[4 * i + 1], m[4 * i + 2], m[4 * i + 3]];
+    Ok(Transform::from_rows([row(0), row(1), row(2), row(3)]))
 }
 
 fn read<T>(

@@ -50,27 +50,38 @@ pub(crate) struct Bad {
 
 /// The value that a property's tag and text stand for; the tag must be one of [`TAGS`].
 pub(super) fn parse(tag: &str, text: &str) -> Result<Value, Bad> {
-    let bad = |what: &str| {
-        let message = format!("`{}` is not {what}", crate::suggest::shorten(text));
-        Err(Bad { message, range: 0..text.len() })
-    };
-    let word = text.trim();
     Ok(match tag {
-        "boolean" if ["true", "false"].iter().any(|b| word.eq_ignore_ascii_case(b)) => Value::Boolean,
-        "boolean" => return bad("a boolean (true or false)"),
-        "integer" => match word.parse() {
-            Ok(integer) => Value::Integer(integer),
-            Err(_) => return bad("an integer"),
-        },
-        "float" => match word.parse::<f64>() {
-            Ok(float) if !float.is_nan() => Value::Float(float),
-            _ => return bad("a number"),
-        },
+        "boolean" => boolean(text).map(|_| Value::Boolean)?,
+        "integer" => Value::Integer(integer(text)?),
+        "float" => Value::Float(float(text)?),
         "point" | "point2" => Value::Point(numbers(text, 2..=3)?),
         "vector" | "vector2" => Value::Vector(numbers(text, 2..=3)?),
         "color" | "rgb" => Value::Color(array(text)?),
         _ => Value::String(text.to_owned()),
     })
+}
+
+/// The text is something else than was expected.
+fn is_not(what: &str, text: &str) -> Bad {
+    Bad { message: format!("`{}` is not {what}", crate::suggest::shorten(text)), range: 0..text.len() }
+}
+
+pub(crate) fn boolean(text: &str) -> Result<bool, Bad> {
+    match text.trim().to_ascii_lowercase().as_str() {
+        "true" => Ok(true),
+        "false" => Ok(false),
+        _ => Err(is_not("a boolean (true or false)", text)),
+    }
+}
+
+pub(crate) fn integer(text: &str) -> Result<i64, Bad> {
+    text.trim().parse().map_err(|_| is_not("an integer", text))
+}
+
+/// Any number, an infinite one too.
+pub(crate) fn float(text: &str) -> Result<f64, Bad> {
+    let number = text.trim().parse().ok().filter(|float: &f64| !float.is_nan());
+    number.ok_or_else(|| is_not("a number", text))
 }
 
 /// Exactly `N` finite numbers.

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use caustica_import::{Loaded, parse_nori};
 use caustica_scene::{Description, Diagnostic};
+use proptest::prelude::*;
 
 /// A complete scene with `inner` beside its camera and integrator, on one line up to `inner`.
 pub fn scene(inner: &str) -> String {
@@ -54,4 +55,37 @@ fn unmark(marked: &str) -> (String, u32, u32) {
     let line = before.matches('\n').count() as u32 + 1;
     let column = before.rsplit('\n').next().unwrap_or_default().chars().count() as u32 + 1;
     (format!("{before}{after}"), line, column)
+}
+
+/// Changes of a text: each puts other bytes, or one of the words, in place of some.
+pub fn edits(words: &'static [&'static str]) -> impl Strategy<Value = Vec<Edit>> {
+    let fresh = prop_oneof![
+        prop::collection::vec(any::<u8>(), 0..4),
+        prop::sample::select(words).prop_map(|s| s.as_bytes().to_vec()),
+    ];
+    prop::collection::vec((any::<prop::sample::Index>(), 0..6_usize, fresh), 1..5)
+}
+
+/// Where, how many bytes are removed, and what is put there.
+pub type Edit = (prop::sample::Index, usize, Vec<u8>);
+
+/// The text with those changes.
+pub fn edited(text: &str, edits: &[Edit]) -> Vec<u8> {
+    let mut bytes = text.as_bytes().to_vec();
+    for (index, removed, added) in edits {
+        let at = index.index(bytes.len() + 1);
+        let end = (at + removed).min(bytes.len());
+        bytes.splice(at..end, added.iter().copied());
+    }
+    bytes
+}
+
+/// Asserts that an error stands at a place that the text has.
+pub fn check_place(error: &Diagnostic, text: &str) {
+    let origin = error.origin.as_ref().unwrap_or_else(|| panic!("no place: {error}"));
+    assert!(origin.line >= 1 && origin.line as usize <= text.matches('\n').count() + 1, "{error}");
+    assert!(origin.column >= 1, "{error}");
+    if let Some((start, length)) = origin.span {
+        assert!(start + length <= text.len() + 1, "{error}");
+    }
 }

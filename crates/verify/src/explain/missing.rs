@@ -8,15 +8,15 @@ use std::collections::{BTreeMap, HashMap};
 use caustica_math::{Spectrum, Vec3, Wavelengths};
 use caustica_render::{Control, available_threads};
 use caustica_scene::Scene;
-use caustica_scene::description::Crop;
 use caustica_transport::vertex::Vertex;
 use caustica_transport::{Kernel, Scratch, Settings, Subpaths};
 use serde::Serialize;
 
 use super::Question;
-use super::survey::{Survey, is_inside};
+use super::survey::Survey;
 use super::words::{lamp_words, shape_words};
 use crate::class::{LampEnd, PathClass};
+use crate::grid::Grid;
 use crate::jobs;
 use crate::verify::VerifyError;
 
@@ -64,7 +64,7 @@ type Sources = BTreeMap<(u32, u32, u32), f64>;
 /// Estimates the missing light of a region.
 pub fn estimate(
     scene: &Scene,
-    (question, region): (&Question<'_>, Crop),
+    (question, region): (&Question<'_>, Grid),
     survey: &Survey,
     control: &Control,
 ) -> Result<Vec<Missing>, VerifyError> {
@@ -107,7 +107,7 @@ pub fn estimate(
     let gather = |pass: usize| {
         let mut sums: BTreeMap<String, Sources> = BTreeMap::new();
         each(pass, &mut |pixel, paths| {
-            if is_inside(region, pixel) {
+            if region.pixel(pixel).is_some() {
                 gather_at(paths, (&cells, near, limit), &mut sums);
             }
         });

@@ -11,6 +11,7 @@ use caustica_transport::Settings;
 use serde::Serialize;
 
 use crate::estimator::Estimator;
+use crate::grid::Grid;
 use crate::outcome::{PatternShare, by_pattern};
 use crate::verify::VerifyError;
 
@@ -79,18 +80,16 @@ pub fn explain(
     control: &Control,
     mut tell: impl FnMut(f64),
 ) -> Result<Explanation, VerifyError> {
-    let window = scene.film.window();
-    let region = question.region.unwrap_or(window);
+    let window = question.region.unwrap_or(scene.film.window());
+    let region = Grid { window, block: 1 };
     let survey = Survey::run(scene, (question, region), control, |f| tell(0.8 * f))?;
     let missing = missing::estimate(scene, (question, region), &survey, control)?;
     tell(1.0);
     let rows = rows(scene, question, &survey);
-    let found = survey.light();
-    let pixels = f64::from(region.width) * f64::from(region.height);
     let sentences = words::sentences(scene, question, (&survey, &rows, &missing));
     Ok(Explanation {
-        region: [region.x, region.y, region.width, region.height],
-        mean: found / (pixels * f64::from(survey.passes)),
+        region: [window.x, window.y, window.width, window.height],
+        mean: survey.light() / survey.pixel_samples(),
         rows,
         missing,
         sentences,

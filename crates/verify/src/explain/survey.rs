@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use caustica_math::{Rgb, Vec2, Wavelengths};
 use caustica_render::{Control, available_threads};
 use caustica_scene::Scene;
-use caustica_scene::description::{Crop, Integrator};
+use caustica_scene::description::Integrator;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink, StrategySet, Subpaths};
 
 use super::Question;
 use crate::class::PathClass;
+use crate::grid::Grid;
 use crate::jobs;
 use crate::tally::ClassTally;
 use crate::verify::VerifyError;
@@ -78,7 +79,7 @@ impl Survey {
     /// Looks at all samples of a question.
     pub fn run(
         scene: &Scene,
-        (question, region): (&Question<'_>, Crop),
+        (question, region): (&Question<'_>, Grid),
         control: &Control,
         mut progress: impl FnMut(f64),
     ) -> Result<Self, VerifyError> {
@@ -100,23 +101,19 @@ impl Survey {
             let mut listener = Listener { kernel: &kernel, region, limit, survey, pixel: [0; 2] };
             for pass in 0..passes {
                 let sample = part as u32 * passes + pass;
-                for pixel in pixels(scene.film.window()) {
+                for pixel in Grid::new(scene, 1).each_pixel() {
                     listener.pixel = pixel;
                     kernel.sample(pixel, sample, &mut scratch, &mut listener);
                     if pass == 0 {
                         let paths = looking.subpaths(pixel, sample, &mut scratch);
-                        listener.survey.look(scene, &paths, is_inside(region, pixel));
+                        listener.survey.look(scene, &paths, region.pixel(pixel).is_some());
                     }
                 }
             }
             listener.survey
         };
         let threads = question.threads.unwrap_or_else(available_threads);
-        let mut all = Self {
-            passes: passes * PARTS,
-            pixels: u64::from(region.width) * u64::from(region.height),
-            ..Self::default()
-        };
+        let mut all = Self { passes: passes * PARTS, pixels: region.pixels() as u64, ..Self::default() };
         let mut done = 0;
         let finished = jobs::run((PARTS as usize, threads), control, work, |part| {
             all.merge(&part);
@@ -174,19 +171,10 @@ impl Survey {
     }
 }
 
-fn pixels(w: Crop) -> impl Iterator<Item = [u32; 2]> {
-    (w.y..w.y + w.height).flat_map(move |y| (w.x..w.x + w.width).map(move |x| [x, y]))
-}
-
-/// Whether a region holds a pixel.
-pub fn is_inside(region: Crop, [x, y]: [u32; 2]) -> bool {
-    x >= region.x && x - region.x < region.width && y >= region.y && y - region.y < region.height
-}
-
 /// Sorts what `bdpt` finds in the region.
 struct Listener<'k, 's> {
     kernel: &'k Kernel<'s>,
-    region: Crop,
+    region: Grid,
     /// The most edges that the picture's paths have.
     limit: Option<u32>,
     survey: Survey,
@@ -198,27 +186,11 @@ impl Listener<'_, '_> {
     /// How much of a contribution the region gets.
     fn share(&self, c: &Contribution<'_>) -> f32 {
         if c.strategy.t != 1 {
-            return if is_inside(self.region, self.pixel) { c.filter_weight } else { 0.0 };
+            return if self.region.pixel(self.pixel).is_some() { c.filter_weight } else { 0.0 };
         }
-        let (camera, filter) = (&self.kernel.scene().camera, self.kernel.filter());
-        if camera.wraps() {
-            return camera.aliases(c.film, filter.radius()).map(|film| self.splat_share(film)).sum();
-        }
-        self.splat_share(c.film)
-    }
-
-    /// The filter's sum over the region's pixels around a film position.
-    fn splat_share(&self, film: Vec2) -> f32 {
-        let (filter, Crop { x, y, width, height }) = (self.kernel.filter(), self.region);
-        let along = |at: f32, start: u32, count: u32| -> f32 {
-            let first = (at - filter.radius() - 1.0).max(start as f32) as u32;
-            let last = (at + filter.radius() + 1.0).min((start + count) as f32).max(0.0) as u32;
-            (first..last.min(start + count)).map(|i| filter.eval_axis(i as f32 + 0.5 - at)).sum()
-        };
-        if !(film.x.is_finite() && film.y.is_finite()) {
-            return 0.0;
-        }
-        along(film.x, x, width) * along(film.y, y, height)
+        let (mut share, camera) = (0.0, &self.kernel.scene().camera);
+        self.region.each_splatted((camera, self.kernel.filter()), c.film, |_, value| share += value);
+        share
     }
 }
 
