@@ -137,6 +137,19 @@ fn integrators_and_depths() {
 }
 
 #[test]
+fn lamps_without_a_material_are_black() {
+    let shape = |inside: &str| {
+        let scene = good(&scene(&format!("<shape type='rectangle'>{inside}</shape>")));
+        let material = scene.shapes.last().unwrap().material;
+        scene.materials[material.0 as usize].kind
+    };
+    let diffuse = |albedo: f32| MaterialKind::Diffuse { albedo: Rgb::splat(albedo).into() };
+    assert_eq!(shape("<emitter type='area'/>"), diffuse(0.0));
+    assert_eq!(shape(""), diffuse(0.5));
+    assert_eq!(shape("<emitter type='area'/><bsdf type='diffuse'/>"), diffuse(0.5));
+}
+
+#[test]
 fn materials() {
     let grey = Rgb::splat(0.5);
     assert_eq!(material("<bsdf type='diffuse'/>"), MaterialKind::Diffuse { albedo: grey.into() });

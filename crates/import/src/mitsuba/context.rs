@@ -30,7 +30,8 @@ pub(super) struct Context<'c> {
     images: BTreeMap<PathBuf, ImageId>,
     /// The materials of objects of the tree.
     pub(super) materials: BTreeMap<usize, MaterialId>,
-    default_material: Option<MaterialId>,
+    /// Of shapes that are no lamps, and of lamps.
+    default_materials: [Option<MaterialId>; 2],
     /// What may still come.
     left: Limits,
 }
@@ -48,7 +49,7 @@ impl<'c> Context<'c> {
             meshes: BTreeMap::new(),
             images: BTreeMap::new(),
             materials: BTreeMap::new(),
-            default_material: None,
+            default_materials: [None; 2],
             left,
         }
     }
@@ -135,12 +136,11 @@ impl<'c> Context<'c> {
         id
     }
 
-    /// The material of shapes that name none.
-    pub(super) fn default_material(&mut self) -> MaterialId {
-        let albedo = Rgb::splat(0.5).into();
+    /// The material of shapes that name none: grey, but lamps are black.
+    pub(super) fn default_material(&mut self, is_lamp: bool) -> MaterialId {
+        let albedo = Rgb::splat(if is_lamp { 0.0 } else { 0.5 }).into();
         let description = &mut self.description;
-        *self
-            .default_material
+        *self.default_materials[usize::from(is_lamp)]
             .get_or_insert_with(|| description.add_material(MaterialKind::Diffuse { albedo }))
     }
 }

@@ -50,8 +50,9 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     {
         flip(mesh);
     }
-    let material = material(&mut fields, cx)?;
-    let emission = match fields.child(Class::Emitter)? {
+    let emitter = fields.child(Class::Emitter)?;
+    let material = material(&mut fields, emitter.is_some(), cx)?;
+    let emission = match emitter {
         Some(emitter) => emitter::read_area(emitter, cx)?,
         None => None,
     };
@@ -70,10 +71,10 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
 }
 
 /// The shape's material: the last one, as several are allowed where an included part has one of its own.
-fn material(fields: &mut Fields, cx: &mut Context) -> Result<MaterialId, Diagnostic> {
+fn material(fields: &mut Fields, is_lamp: bool, cx: &mut Context) -> Result<MaterialId, Diagnostic> {
     match fields.child(Class::Bsdf)? {
         Some(index) => bsdf::read(index, cx),
-        None => Ok(cx.default_material()),
+        None => Ok(cx.default_material(is_lamp)),
     }
 }
 
