@@ -7,6 +7,7 @@
 pub mod bsdf;
 pub mod bvh;
 pub mod camera;
+pub mod casters;
 pub mod description;
 pub mod diagnostic;
 mod figures;

@@ -5,15 +5,16 @@ use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, V
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, shears};
+use crate::casters::Casters;
 use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
     SpotLight, Surroundings, power_through_disk,
 };
-use crate::material::bsdf_at;
+use crate::material::{bsdf_at, is_dirac};
 use crate::references;
-use crate::surface::{SurfacePoint, Surfaces, is_reachable};
+use crate::surface::{FlatShape, SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
 use crate::{figures, memory};
 
@@ -29,6 +30,7 @@ pub struct Scene {
     materials: Vec<MaterialKind>,
     images: Vec<Image>,
     lights: Lights,
+    casters: Casters,
     center: Vec3,
     radius: f32,
     brightest: f32,
@@ -83,6 +85,9 @@ impl Scene {
             (bounds.center(), ((bounds.max - bounds.center()).length() * 1.0001).max(f32::MIN_POSITIVE))
         };
         let materials = description.materials.iter().map(|m| m.kind).collect();
+        let is_caster = |shape: &FlatShape| is_dirac(&description.materials[shape.material as usize].kind);
+        let casters = (0..).zip(&surfaces.shapes).filter(|(_, s)| is_caster(s)).map(|(i, _)| i);
+        let casters = Casters::new(casters, &surfaces);
         let images = std::mem::take(&mut description.images);
         let mut scene = Self {
             camera,
@@ -92,6 +97,7 @@ impl Scene {
             materials,
             images,
             lights: Lights::new(Vec::new(), &[]),
+            casters,
             center,
             radius,
             brightest: 0.0,
@@ -320,6 +326,11 @@ impl Scene {
     /// The lamps.
     pub fn lamps(&self) -> &Lights {
         &self.lights
+    }
+
+    /// Where mirrors and glass are.
+    pub fn casters(&self) -> &Casters {
+        &self.casters
     }
 
     /// The largest radiance that can be seen directly, of any lamp and channel; zero if lamps have no extent.

@@ -132,6 +132,11 @@ pub struct Judgement {
     pub measured: [f64; 3],
     /// nᵢ·pᵢ(x) for i = 0 to k: a strategy's density times how often a pass tries it per pixel of the window.
     pub densities: Vec<f64>,
+    /// Where rays may be aimed: the walk's density of the direction in which it leaves the last vertex that is not
+    /// smooth, and the density of an aimed ray. `None` if the path has no such vertex, or none that such rays leave.
+    pub aimed: Option<[f64; 2]>,
+    /// For each strategy, whether its joining edge is one that forbids aimed rays.
+    pub forbids: Vec<bool>,
     /// About how large a relative error the offsets of rays and rounding to `f32` may cause.
     pub uncertainty: f64,
 }
@@ -140,6 +145,18 @@ impl Judgement {
     /// The unweighted estimate that strategy ought to make: f/(n·p).
     pub fn estimate(&self, strategy: Strategy) -> [f64; 3] {
         self.measured.map(|f| f / self.densities[strategy.s as usize])
+    }
+
+    /// The share of the walk of s = 0 in a path that `rays` aimed ones may make too: p/(p + n·q). They start only where
+    /// no strategy of the set can join what comes before.
+    pub fn walk_share(&self, rays: u32, set: &StrategySet) -> f64 {
+        let vertices = self.densities.len() as u32;
+        let forbidden = (0..vertices)
+            .any(|s| self.forbids[s as usize] && set.contains(Strategy { s, t: vertices - s }));
+        match self.aimed {
+            Some([p, q]) if !forbidden => p / (p + f64::from(rays) * q),
+            _ => 1.0,
+        }
     }
 
     /// The weight of that strategy among those of the set.
@@ -169,7 +186,8 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     let radiance = lanes(lights.radiance(lamp, narrow(emitted)));
     if nodes[0].infinite && nodes[1].infinite {
         // A camera of parallel rays looks at the sky: a density in both measures at once, and no other way.
-        return Ok(Judgement { measured: radiance, densities: vec![1.0, 0.0], uncertainty: 0.0 });
+        let (densities, forbids) = (vec![1.0, 0.0], vec![false; 2]);
+        return Ok(Judgement { measured: radiance, densities, aimed: None, forbids, uncertainty: 0.0 });
     }
     let edges: Vec<Edge> = nodes.windows(2).map(|n| Edge::new(&n[0], &n[1])).collect();
     let scatterings: Vec<Option<Scattering>> = (0..=k)
@@ -205,7 +223,41 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     let uncertainty = dimming
         + edges.iter().map(|e| e.uncertainty).sum::<f64>()
         + scatterings.iter().flatten().map(|s| s.uncertainty).sum::<f64>();
-    Ok(Judgement { measured, densities, uncertainty })
+    let start = (1..k).find(|j| scatterings[*j].as_ref().is_some_and(|s| !s.smooth)).filter(|j| *j > 1);
+    let forbids = (0..=k).map(|s| start.is_some_and(|j| s > j) && densities[s] > 0.0).collect();
+    let mut uncertainty = uncertainty;
+    let aimed = start.and_then(|j| {
+        let (q, doubt) = aimed_density(scene, &nodes[j], [&nodes[j - 1], &nodes[j + 1]])?;
+        uncertainty += doubt;
+        Some([scatterings[j].as_ref()?.to_light_pdf, q])
+    });
+    Ok(Judgement { measured, densities, aimed, forbids, uncertainty })
+}
+
+/// The density per solid angle with which a ray is aimed from a vertex at the one before it (nearer to the lamp), and how
+/// doubtful that is, near the border of a cone. Each of the balls that are seen from the vertex, on the side of the one
+/// after it unless it transmits, is chosen by its solid angle.
+fn aimed_density(scene: &Scene, from: &Node<'_>, [before, after]: [&Node<'_>; 2]) -> Option<(f64, f64)> {
+    let (direction, normal) = (from.to(before).0, from.normal?);
+    let side = dot(normal, from.to(after).0).signum();
+    let transmits = from.surface?.bsdf.transmits();
+    let (mut all, mut hit, mut doubt) = (0.0, 0.0, 0.0);
+    for caster in scene.casters().iter() {
+        let (d, radius) = (plus(wide(caster.center), from.at, -1.0), f64::from(caster.radius));
+        let squared = dot(d, d);
+        let hidden = !transmits && side * dot(normal, d) + radius <= 0.0;
+        if squared <= 1.001 * radius * radius || hidden {
+            continue;
+        }
+        let cos = (1.0 - radius * radius / squared).sqrt();
+        let excess = dot(d, direction) / squared.sqrt() - cos;
+        all += 2.0 * std::f64::consts::PI * (1.0 - cos);
+        hit += f64::from(u8::from(excess > 0.0));
+        if excess.abs() < 1e-5 {
+            doubt = 1.0;
+        }
+    }
+    (all > 0.0).then(|| (hit / all, doubt))
 }
 
 /// Densities at the two ends of a path.

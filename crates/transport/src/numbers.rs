@@ -24,6 +24,8 @@ const POINT: u64 = 3;
 
 // Groups beyond those of all bounces.
 const CANDIDATES: u64 = 1 << 16;
+/// The first of those of directions to aim at.
+const AIMED: u64 = 1 << 20;
 /// The first of those of the places on the lens that the points of a light path are joined with.
 const JOINED: u64 = 1 << 16;
 
@@ -110,6 +112,14 @@ impl EyeNumbers {
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
         let group = vertex as u64;
         (self.draw_if(self.needs.choice, group, CHOICE), self.draw(group, POINT))
+    }
+
+    /// The vertex number, for [`Bounces::bounce`], from which aimed rays have theirs.
+    pub const AIMED_BOUNCES: usize = 1 << 21;
+
+    /// Of the directions in which rays are aimed from the surface vertex of that index.
+    pub fn aimed(&mut self, vertex: usize) -> [f32; 2] {
+        self.draw(AIMED + vertex as u64, BOUNCE)
     }
 
     /// Of roulette among what the path can be joined with.

@@ -33,6 +33,8 @@ type Counts = BTreeMap<Strategy, u32>;
 struct Judge<'a> {
     scene: &'a Scene,
     settings: Settings,
+    /// How many rays are aimed, with these settings.
+    aimed_rays: u32,
     checked: Counts,
     skipped: u32,
     wrong: Vec<String>,
@@ -57,7 +59,10 @@ impl Judge<'_> {
             let ratio = [0, 1, 2].map(|lane| estimate[lane] / expected[lane]);
             return Err(format!("estimate {estimate:?} is {ratio:?} of what it should be; {judgement:?}"));
         }
-        let weight = judgement.weight(c.strategy, &self.settings.strategies, self.settings.heuristic);
+        let mut weight = judgement.weight(c.strategy, &self.settings.strategies, self.settings.heuristic);
+        if c.strategy.s == 0 {
+            weight *= judgement.walk_share(self.aimed_rays, &self.settings.strategies);
+        }
         let close = (f64::from(c.weight) - weight).abs() <= TOLERANCE;
         if !close {
             return Err(format!("weight {} should be {weight}; {judgement:?}", c.weight));
@@ -93,7 +98,10 @@ fn run(name: &str, scene: &Scene, settings: Settings, samples: u32) -> (Counts, 
     let what = format!("{name}: {settings:?}");
     let kernel = Kernel::new(scene, settings.clone());
     let mut scratch = Scratch::default();
-    let mut judge = Judge { scene, settings, checked: Counts::new(), skipped: 0, wrong: vec![] };
+    // Weights that add up all strategies go without.
+    let adds_up = settings.exhaustive_weights || settings.strategies.classes().is_none();
+    let aimed_rays = if adds_up { 0 } else { settings.aimed_rays };
+    let mut judge = Judge { scene, settings, aimed_rays, checked: Counts::new(), skipped: 0, wrong: vec![] };
     let Crop { x, y, width, height } = scene.film.window();
     let pixels = width * height;
     for i in 0..samples.next_multiple_of(pixels) {
