@@ -124,10 +124,78 @@ fn ball(shape: u32, surfaces: &Surfaces) -> Caster {
     if let Some(sphere) = surfaces.sphere(flat.first_primitive) {
         return Caster { center: sphere.center, radius: sphere.radius };
     }
-    let corners =
-        || (flat.first_primitive..flat.first_primitive + flat.primitive_count).flat_map(|t| surfaces.corners(t));
+    let corners = || {
+        (flat.first_primitive..flat.first_primitive + flat.primitive_count).flat_map(|t| surfaces.corners(t))
+    };
     let bounds = corners().fold(crate::bvh::Bounds::EMPTY, crate::bvh::Bounds::with);
     let center = bounds.center();
     let farthest = corners().map(|p| p.distance_squared(center)).fold(0.0, f32::max);
     Caster { center, radius: farthest.sqrt() * (1.0 + 4.0 * f32::EPSILON) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use caustica_math::{SampleStream, StreamId};
+
+    fn casters() -> Casters {
+        let ball = |x, y, z, radius| Caster { center: Vec3::new(x, y, z), radius };
+        // Two that overlap as seen from the origin, a small one apart, one below, and one around the origin.
+        let list = vec![
+            ball(0.0, 0.0, 5.0, 1.0),
+            ball(0.5, 0.0, 4.0, 1.0),
+            ball(3.0, 0.0, 1.0, 0.01),
+            ball(0.0, 0.0, -3.0, 1.0),
+            ball(0.0, 0.5, 0.0, 2.0),
+        ];
+        Casters { list }
+    }
+
+    /// The share of directions in each of some cells, drawn and by the density: within 5σ.
+    #[test]
+    fn directions_follow_their_density() {
+        let casters = casters();
+        for above in [None, Some(Vec3::Z)] {
+            let aim = casters.seen_from(Vec3::ZERO, above).unwrap();
+            let mut s = SampleStream::new(StreamId { seed: 1, pixel: 0, sample: 0, walk: 0 });
+            let cells = 4;
+            let cell = |d: Vec3| ((d.z > 0.97) as usize) + 2 * ((d.x > 0.1) as usize);
+            let (mut drawn, mut expected) = (vec![0.0; cells], vec![0.0; cells]);
+            let n = 400_000;
+            for _ in 0..n {
+                let d = aim.sample(s.next_2d()).unwrap();
+                assert!((d.length() - 1.0).abs() < 1e-5 && (above.is_none() || d.z > 0.0));
+                drawn[cell(d)] += 1.0 / f64::from(n);
+                let d = warp::uniform_sphere(s.next_2d());
+                expected[cell(d)] += f64::from(aim.pdf(d).0 / warp::UNIFORM_SPHERE_PDF.0) / f64::from(n);
+            }
+            // The density over that of uniform directions is at most 50.
+            assert!((expected.iter().sum::<f64>() - 1.0).abs() < 5.0 * (50.0 / f64::from(n)).sqrt());
+            for (a, b) in drawn.iter().zip(&expected) {
+                assert!(
+                    (a - b).abs() < 5.0 * (51.0 * b / f64::from(n)).sqrt() + 1e-4,
+                    "{drawn:?}, {expected:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn narrow_cones_hold_what_is_drawn_in_them() {
+        let casters = Casters { list: vec![Caster { center: Vec3::new(300.0, -400.0, 0.1), radius: 1e-3 }] };
+        let aim = casters.seen_from(Vec3::ZERO, None).unwrap();
+        let mut s = SampleStream::new(StreamId { seed: 2, pixel: 0, sample: 0, walk: 0 });
+        let inside = (0..1000).filter(|_| aim.pdf(aim.sample(s.next_2d()).unwrap()).0 > 0.0).count();
+        // Rounding of the direction, 10⁻⁷, is a twentieth of the cone's half angle.
+        assert!(inside > 850, "{inside}");
+    }
+
+    #[test]
+    fn nothing_is_seen_from_inside_or_below() {
+        let casters = Casters { list: vec![Caster { center: Vec3::Z, radius: 0.5 }] };
+        assert!(casters.seen_from(Vec3::new(0.0, 0.0, 1.2), None).is_none());
+        assert!(casters.seen_from(Vec3::ZERO, Some(-Vec3::Z)).is_none());
+        assert!(casters.seen_from(Vec3::ZERO, Some(Vec3::Z)).is_some());
+        assert!(Casters::default().seen_from(Vec3::ZERO, None).is_none());
+    }
 }

@@ -38,8 +38,12 @@ pub fn bsdf_at(kind: &MaterialKind, textures: &TextureTable<'_>, uv: Vec2, w: Wa
 /// Whether the material scatters by Dirac lobes alone.
 pub fn is_dirac(kind: &MaterialKind) -> bool {
     match kind {
-        MaterialKind::Mirror { .. } | MaterialKind::Dielectric { .. } | MaterialKind::Conductor { .. } => true,
+        MaterialKind::Mirror { .. } | MaterialKind::Dielectric { .. } | MaterialKind::Conductor { .. } => {
+            true
+        }
         MaterialKind::RoughDielectric { interior_ior, exterior_ior, .. } => interior_ior == exterior_ior,
-        MaterialKind::Diffuse { .. } | MaterialKind::RoughConductor { .. } | MaterialKind::Microfacet { .. } => false,
+        MaterialKind::Diffuse { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::Microfacet { .. } => false,
     }
 }

@@ -151,8 +151,8 @@ impl Judgement {
     /// no strategy of the set can join what comes before.
     pub fn walk_share(&self, rays: u32, set: &StrategySet) -> f64 {
         let vertices = self.densities.len() as u32;
-        let forbidden = (0..vertices)
-            .any(|s| self.forbids[s as usize] && set.contains(Strategy { s, t: vertices - s }));
+        let forbidden =
+            (0..vertices).any(|s| self.forbids[s as usize] && set.contains(Strategy { s, t: vertices - s }));
         match self.aimed {
             Some([p, q]) if !forbidden => p / (p + f64::from(rays) * q),
             _ => 1.0,

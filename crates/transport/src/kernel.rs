@@ -11,8 +11,8 @@ use crate::bdpt::Candidates;
 use crate::numbers::{EyeNumbers, Needs};
 use crate::sink::Sink;
 use crate::strategy::{Classes, StrategySet};
-use crate::walk::{Flight, Subpath};
 use crate::vertex::Vertex;
+use crate::walk::{Flight, Subpath};
 use crate::weight::{Heuristic, VertexDensities};
 
 /// How a scene is rendered.
@@ -52,7 +52,7 @@ impl Default for Settings {
             strategies: StrategySet::default(),
             heuristic: Heuristic::Balance,
             exhaustive_weights: false,
-            aimed_rays: 4,
+            aimed_rays: 2,
         }
     }
 }

@@ -66,11 +66,7 @@ impl Kernel<'_> {
                 }
                 let chain = Chain {
                     eye: &mut *eye,
-                    ray: Ray {
-                        origin: vertex.point.off_surface(direction),
-                        direction,
-                        t_max: f32::INFINITY,
-                    },
+                    ray: Ray { origin: vertex.point.off_surface(direction), direction, t_max: f32::INFINITY },
                     throughput: vertex.throughput * scatter.value * (1.0 / density),
                     share: scatter.forward.0 / density,
                     radiance_scale: 1.0,
@@ -184,8 +180,7 @@ impl Kernel<'_> {
             return None;
         }
         let normal = vertex.point.normal;
-        let above =
-            (!vertex.bsdf.transmits()).then(|| normal * 1.0_f32.copysign(normal.dot(vertex.prev)));
+        let above = (!vertex.bsdf.transmits()).then(|| normal * 1.0_f32.copysign(normal.dot(vertex.prev)));
         self.scene.casters().seen_from(vertex.point.position, above)
     }
 
@@ -222,6 +217,10 @@ impl EyeNumbers {
         bsdf: &caustica_scene::bsdf::Bsdf,
         roulette: bool,
     ) -> crate::numbers::Bounce {
-        self.bounce(EyeNumbers::AIMED_BOUNCES + ((start << 6 | number as usize) << 11 | passed), bsdf, roulette)
+        self.bounce(
+            EyeNumbers::AIMED_BOUNCES + ((start << 6 | number as usize) << 11 | passed),
+            bsdf,
+            roulette,
+        )
     }
 }
