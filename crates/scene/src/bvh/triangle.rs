@@ -65,6 +65,13 @@ fn size<L: Lanes>(v: L) -> L {
     v.max(L::splat(0.0).sub(v))
 }
 
+/// The largest absolute value of three, and some more. (No closure: LLVM would not inline that into functions with
+/// AVX2.)
+#[inline(always)]
+fn reach<L: Lanes>([a, b, c]: [L; 3], more: L) -> L {
+    size(a).max(size(b)).max(size(c)).add(more)
+}
+
 /// Where a ray meets a triangle's plane; not a number or infinite where it runs along it.
 fn plane_distance(ray: &Ray, corners: [Vec3; 3]) -> f32 {
     let [a, b, c] = corners;
@@ -134,8 +141,7 @@ impl TriangleBlock {
         let spread = az.max(bz).max(cz).sub(az.min(bz).min(cz));
         let near = inside & size(depth).le(size(det).mul(spread));
         if near != 0 {
-            let reach = |a: L, b: L, c: L| size(a).max(size(b)).max(size(c)).add(spread);
-            let square = reach(ax, bx, cx).mul(reach(ay, by, cy));
+            let square = reach([ax, bx, cx], spread).mul(reach([ay, by, cy], spread));
             let unsure = near & size(det).mul(L::splat(THIN)).le(square);
             if unsure != 0 {
                 t = L::load(&self.refined(ray.source(), unsure, t.store()));
