@@ -102,10 +102,7 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             }
             let distances = t_near.store();
             // SAFETY: at most `WIDTH - 1` children wait.
-            unsafe { waiting = push_sorted(&mut stack, waiting, mask, node, &distances) };
-            waiting -= 1;
-            // SAFETY: the nearest has just been written.
-            current = child_of(unsafe { stack.read(waiting) });
+            (current, waiting) = unsafe { push_sorted(&mut stack, waiting, mask, node, &distances) };
         }
         if current.is_leaf() {
             test_leaf((bvh, blocks), current, ray, &lanes, &mut best);
@@ -125,7 +122,8 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     }
 }
 
-/// Puts the children in `mask`, which are two or more, on the stack, the nearest on top. Returns the new height.
+/// Puts the children in `mask`, which are two or more, on the stack, all but the nearest. Returns that and the new
+/// height.
 ///
 /// # Safety
 /// As of [`Stack::write`], for all children.
@@ -136,7 +134,7 @@ unsafe fn push_sorted(
     mask: u32,
     node: &Node,
     distances: &[f32; WIDTH],
-) -> usize {
+) -> (Child, usize) {
     let of = |lane: usize| key(distances[lane], node.children[lane]);
     let (a, rest) = (of(lane(mask)), mask & mask.wrapping_sub(1));
     let (b, rest) = (of(lane(rest)), rest & rest.wrapping_sub(1));
@@ -145,14 +143,16 @@ unsafe fn push_sorted(
     unsafe {
         if rest == 0 {
             stack.write(bottom, b);
-            stack.write(bottom + 1, a);
-            return bottom + 2;
+            return (child_of(a), bottom + 1);
         }
         let (c, mut rest) = (of(lane(rest)), rest & rest.wrapping_sub(1));
         let (a, c) = (a.min(c), a.max(c));
         let (b, c) = (b.min(c), b.max(c));
         stack.write(bottom, c);
         stack.write(bottom + 1, b);
+        if rest == 0 {
+            return (child_of(a), bottom + 2);
+        }
         stack.write(bottom + 2, a);
         let mut top = bottom + 3;
         while rest != 0 {
@@ -166,7 +166,7 @@ unsafe fn push_sorted(
             stack.write(at, new);
             top += 1;
         }
-        top
+        (child_of(stack.read(top - 1)), top - 1)
     }
 }
 

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::pages::Pages;
 use super::sphere::SphereData;
 use super::triangle::TriangleBlock;
-use super::{Bounds, Bvh, Child, TreeQuality};
+use super::{Bounds, Bvh, Child, Kernels, TreeQuality};
 use collapse::{Flat, NO_TRIANGLE};
 use reference::{Extents, Reference};
 use spatial::Spatial;
@@ -56,17 +56,13 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
     let mut references = primitives.references();
     let count = references.len();
     let extent = Extents::of(&references).boxes;
-    #[cfg(target_arch = "x86_64")]
-    let avx2 = super::avx2::is_available();
-    #[cfg(not(target_arch = "x86_64"))]
-    let avx2 = false;
     let mut bvh = Bvh {
         nodes: Pages::zeroed(0),
         blocks: Pages::zeroed(0),
         spheres: Vec::new(),
         root: Child::NONE,
         bounds: extent.bounds(),
-        avx2,
+        kernels: Kernels::best(),
     };
     if references.is_empty() {
         return bvh;
