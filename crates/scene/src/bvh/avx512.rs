@@ -99,4 +99,14 @@ impl Lanes for Avx512 {
         // SAFETY: see `Avx512`.
         unsafe { u32::from(_mm256_cmp_ps_mask::<_CMP_GT_OQ>(self.0, o.0)) }
     }
+    #[inline(always)]
+    fn packed(values: &[u32; 8], mask: u32) -> [u32; 8] {
+        let mut packed = [0; 8];
+        // SAFETY: see `Avx512`; both have eight elements, and need not be aligned.
+        unsafe {
+            let values = _mm256_loadu_si256(values.as_ptr().cast());
+            _mm256_storeu_si256(packed.as_mut_ptr().cast(), _mm256_maskz_compress_epi32(mask as u8, values));
+        }
+        packed
+    }
 }

@@ -22,6 +22,8 @@ pub(super) trait Lanes: Copy {
     fn ge(self, o: Self) -> u32;
     /// One bit a lane: self > o. NaN compares false.
     fn gt(self, o: Self) -> u32;
+    /// The values whose bits are set, in order, and then whatever.
+    fn packed(values: &[u32; 8], mask: u32) -> [u32; 8];
 }
 
 /// Lanes for every CPU: two SSE2 or NEON registers, or plain arrays where there is neither.
@@ -76,5 +78,15 @@ impl Lanes for Portable {
     #[inline(always)]
     fn gt(self, o: Self) -> u32 {
         self.0.simd_gt(o.0).to_bitmask()
+    }
+    #[inline(always)]
+    fn packed(values: &[u32; 8], mut mask: u32) -> [u32; 8] {
+        let (mut packed, mut count) = ([0; 8], 0);
+        while mask != 0 {
+            packed[count] = values[mask.trailing_zeros() as usize & 7];
+            count += 1;
+            mask &= mask - 1;
+        }
+        packed
     }
 }

@@ -106,7 +106,7 @@ impl Bounds {
 struct Node {
     /// Lower x, y, z, then upper x, y, z.
     bounds: [[f32; WIDTH]; 6],
-    /// The largest first.
+    /// The largest last.
     children: [Child; WIDTH],
     padding: [u32; WIDTH],
 }

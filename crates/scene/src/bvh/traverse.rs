@@ -13,6 +13,8 @@ use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
 const STACK: usize = (WIDTH - 1) * MAX_DEPTH + 1;
+/// Room for a whole node's children to be written at once.
+const SLACK: usize = WIDTH;
 
 /// The first hit along the ray, by lanes that every CPU has.
 pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
@@ -25,12 +27,12 @@ pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
 }
 
 /// What waits to be visited. Clearing it for every ray would cost more than many a ray.
-struct Stack<T>([MaybeUninit<T>; STACK]);
+struct Stack<T>([MaybeUninit<T>; STACK + SLACK]);
 
 impl<T: Copy> Stack<T> {
     #[inline(always)]
     fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; STACK])
+        Self([const { MaybeUninit::uninit() }; STACK + SLACK])
     }
 
     /// Writes entry `at`.
@@ -43,6 +45,17 @@ impl<T: Copy> Stack<T> {
         debug_assert!(at < STACK);
         // SAFETY: as the caller promises.
         unsafe { self.0.get_unchecked_mut(at) }.write(value);
+    }
+
+    /// Writes several entries from `at` on, of which some may count.
+    ///
+    /// # Safety
+    /// As of [`Stack::write`], for those that count.
+    #[inline(always)]
+    unsafe fn write_all(&mut self, at: usize, values: [T; WIDTH]) {
+        debug_assert!(at < STACK);
+        // SAFETY: there is room for all where the first may be written.
+        unsafe { self.0.as_mut_ptr().add(at).cast::<[T; WIDTH]>().write(values) };
     }
 
     /// Reads entry `at`.
@@ -245,20 +258,17 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
         while !current.is_leaf() {
             // SAFETY: children that are no leaves are indices of nodes.
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
-            let (mut mask, _) = lanes.enter(&node.bounds, t_max);
+            let (mask, _) = lanes.enter(&node.bounds, t_max);
             if mask == 0 {
                 break;
             }
-            // The largest is the first, and is visited first.
-            current = node.children[lane(mask)];
-            mask &= mask.wrapping_sub(1);
-            while mask != 0 {
-                let last = (31 - mask.leading_zeros()) as usize & (WIDTH - 1);
-                mask ^= 1 << last;
-                // SAFETY: all children but one wait.
-                unsafe { stack.write(waiting, node.children[last]) };
-                waiting += 1;
-            }
+            // The largest is the last, and is visited first.
+            let last = (31 - mask.leading_zeros()) as usize & (WIDTH - 1);
+            let others = mask ^ 1 << last;
+            current = node.children[last];
+            // SAFETY: all children but one wait.
+            unsafe { stack.write_all(waiting, L::packed(bytemuck::cast_ref(&node.children), others)) };
+            waiting += others.count_ones() as usize;
         }
         if current.is_leaf() && is_hit((bvh, blocks), current, ray, &lanes) {
             return true;
@@ -268,7 +278,7 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
         }
         waiting -= 1;
         // SAFETY: what waits has been written.
-        current = unsafe { stack.read(waiting) };
+        current = Child(unsafe { stack.read(waiting) });
     }
 }
 

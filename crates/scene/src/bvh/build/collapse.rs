@@ -212,7 +212,7 @@ impl<'a> Flat<'a> {
             children[1].roots(WIDTH - left, &mut roots);
         }
         // Stable: equal ones stay in order.
-        roots.sort_by(|a, b| b.bounds.half_area().total_cmp(&a.bounds.half_area()));
+        roots.sort_by(|a, b| a.bounds.half_area().total_cmp(&b.bounds.half_area()));
         let index = self.nodes.len();
         self.nodes.push(EMPTY_NODE);
         for (lane, root) in roots.into_iter().enumerate() {
