@@ -139,13 +139,12 @@ impl TriangleBlock {
         let depth = u.mul(az).add(v.mul(bz)).add(w.mul(cz));
         let mut t = ray.along().mul(depth).div(det);
         let spread = az.max(bz).max(cz).sub(az.min(bz).min(cz));
-        let near = inside & size(depth).le(size(det).mul(spread));
-        if near != 0 {
-            let square = reach([ax, bx, cx], spread).mul(reach([ay, by, cy], spread));
-            let unsure = near & size(det).mul(L::splat(THIN)).le(square);
-            if unsure != 0 {
-                t = L::load(&self.refined(ray.source(), unsure, t.store()));
-            }
+        let square = reach([ax, bx, cx], spread).mul(reach([ay, by, cy], spread));
+        let (depth, det_size) = (size(depth), size(det));
+        // Both at once: few are, but half of all rays begin on a triangle and are near.
+        let unsure = inside & depth.le(det_size.mul(spread)) & det_size.mul(L::splat(THIN)).le(square);
+        if unsure != 0 {
+            t = L::load(&self.refined(ray.source(), unsure, t.store()));
         }
         let t_max = L::splat(t_max);
         let hit = inside & t.gt(zero) & t.le(t_max);
