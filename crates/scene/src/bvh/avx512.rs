@@ -3,7 +3,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::Lanes;
+use super::lanes::{Eight, Lanes};
 use super::traverse::{any_hit, first_hit};
 use super::{Bvh, Hit, Ray};
 
@@ -48,10 +48,10 @@ impl Lanes for Avx512 {
         Self(unsafe { _mm256_loadu_ps(v.as_ptr()) })
     }
     #[inline(always)]
-    fn store(self) -> [f32; 8] {
-        let mut v = [0.0; 8];
-        // SAFETY: see `Avx512`; the array has eight elements, and need not be aligned.
-        unsafe { _mm256_storeu_ps(v.as_mut_ptr(), self.0) };
+    fn store(self) -> Eight {
+        let mut v = Eight([0.0; 8]);
+        // SAFETY: see `Avx512`; the array has eight elements and is aligned.
+        unsafe { _mm256_store_ps(v.0.as_mut_ptr(), self.0) };
         v
     }
     #[inline(always)]

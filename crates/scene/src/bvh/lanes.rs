@@ -2,12 +2,17 @@
 
 use wide::f32x8;
 
+/// Eight numbers as they are best stored: in one line of the cache.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub(super) struct Eight(pub [f32; 8]);
+
 /// Eight `f32` lanes. Every operation rounds as the scalar one does and none is fused, so that all kinds of
 /// lanes give the same bits.
 pub(super) trait Lanes: Copy {
     fn splat(v: f32) -> Self;
     fn load(v: &[f32; 8]) -> Self;
-    fn store(self) -> [f32; 8];
+    fn store(self) -> Eight;
     fn add(self, o: Self) -> Self;
     fn sub(self, o: Self) -> Self;
     fn mul(self, o: Self) -> Self;
@@ -40,8 +45,8 @@ impl Lanes for Portable {
         Self(f32x8::new(*v))
     }
     #[inline(always)]
-    fn store(self) -> [f32; 8] {
-        self.0.to_array()
+    fn store(self) -> Eight {
+        Eight(self.0.to_array())
     }
     #[inline(always)]
     fn add(self, o: Self) -> Self {

@@ -185,10 +185,8 @@ impl Kernels {
     /// All that this CPU can run, the best first.
     fn available() -> impl Iterator<Item = Self> {
         #[cfg(target_arch = "x86_64")]
-        let special = [
-            avx512::is_available().then_some(Self::Avx512),
-            avx2::is_available().then_some(Self::Avx2),
-        ];
+        let special =
+            [avx512::is_available().then_some(Self::Avx512), avx2::is_available().then_some(Self::Avx2)];
         #[cfg(not(target_arch = "x86_64"))]
         let special = [];
         special.into_iter().flatten().chain([Self::Portable])

@@ -151,8 +151,11 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
         let (mut t_near, mut t_far) = (L::splat(0.0), t_max);
         for axis in 0..3 {
             let first = self.rows.points[axis];
-            let (a, b, c) =
-                (row::<L, 3>(&corners[0], first), row::<L, 3>(&corners[1], first), row::<L, 3>(&corners[2], first));
+            let (a, b, c) = (
+                row::<L, 3>(&corners[0], first),
+                row::<L, 3>(&corners[1], first),
+                row::<L, 3>(&corners[2], first),
+            );
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             let (origin, inverse) = (self.origin[axis], self.inverse[axis]);
             t_near = t_near.max(low.sub(origin).mul(inverse).min(high.sub(origin).mul(inverse)));

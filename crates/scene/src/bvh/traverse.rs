@@ -113,7 +113,7 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
                 current = node.children[first];
                 continue;
             }
-            let distances = t_near.store();
+            let distances = t_near.store().0;
             // SAFETY: at most `WIDTH - 1` children wait.
             (current, waiting) = unsafe { push_sorted(&mut stack, waiting, mask, node, &distances) };
         }
@@ -199,7 +199,8 @@ fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>) -> Opti
         return Some(Hit { t, primitive, b1: 0.0, b2: 0.0, corners: [Vec3::ZERO; 3] });
     }
     let lane = best.place % BLOCK;
-    let (v, w, det) = (best.edges[0].store()[lane], best.edges[1].store()[lane], best.det.store()[lane]);
+    let (v, w, det) =
+        (best.edges[0].store().0[lane], best.edges[1].store().0[lane], best.det.store().0[lane]);
     // SAFETY: the place is where a triangle was hit.
     let corners = unsafe { blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
     let [b1, b2] = if det == 0.0 { barycentrics(ray, corners) } else { [v / det, w / det] };

@@ -144,7 +144,7 @@ impl TriangleBlock {
         // Both at once: few are, but half of all rays begin on a triangle and are near.
         let unsure = inside & depth.le(det_size.mul(spread)) & det_size.mul(L::splat(THIN)).le(square);
         if unsure != 0 {
-            t = L::load(&self.refined(ray.source(), unsure, t.store()));
+            t = L::load(&self.refined(ray.source(), unsure, t.store().0));
         }
         let t_max = L::splat(t_max);
         let hit = inside & t.gt(zero) & t.le(t_max);
@@ -199,7 +199,7 @@ impl TriangleBlock {
         best: &mut Best<L>,
     ) {
         let Some(Crossings { mut mask, t, edges, det }) = self.test(ray, best.t) else { return };
-        let ts = t.store();
+        let ts = t.store().0;
         let mut winner = None;
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize;
