@@ -15,14 +15,16 @@ pub(super) enum Pages<T> {
 }
 
 /// Tables of fewer bytes have few pages anyway.
-const LARGE: usize = 8 << 20;
+const LARGE: usize = 1 << 20;
+/// The size of a large page on most systems: the end of a table is to lie in one, too.
+const PAGE: usize = 2 << 20;
 
 impl<T: Pod> Pages<T> {
     /// A table of zeros.
     pub(super) fn zeroed(len: usize) -> Self {
         let bytes = len * size_of::<T>();
         if bytes >= LARGE
-            && let Ok(map) = MmapMut::map_anon(bytes)
+            && let Ok(map) = MmapMut::map_anon(bytes.next_multiple_of(PAGE))
         {
             // A system that knows no large pages, or has none left, gives small ones.
             #[cfg(target_os = "linux")]

@@ -12,7 +12,7 @@ use super::reference::Reference;
 
 /// Expected time of a node and of a leaf's block or sphere, by measurement.
 const NODE_COST: f32 = 1.0;
-const BLOCK_COST: f32 = 0.4;
+const BLOCK_COST: f32 = 0.25;
 const SPHERE_COST: f32 = 0.15;
 /// Most blocks or spheres of a leaf.
 const LEAF_BLOCKS: usize = 4;
