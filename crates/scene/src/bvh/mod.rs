@@ -207,6 +207,8 @@ pub struct Bvh {
     root: Child,
     bounds: Bounds,
     kernels: Kernels,
+    /// Whether it is larger than what CPUs keep near by.
+    is_large: bool,
 }
 
 impl Bvh {

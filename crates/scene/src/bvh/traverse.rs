@@ -86,6 +86,22 @@ fn distance_of(key: u64) -> f32 {
     f32::from_bits((key >> 32) as u32)
 }
 
+/// Asks for what a child is to be there soon.
+#[inline(always)]
+fn prefetch(nodes: &[Node], blocks: &[TriangleBlock], child: Child) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let node = nodes.as_ptr().wrapping_add(child.0 as usize & (Child::LEAF as usize - 1)).cast::<i8>();
+        let block = blocks.as_ptr().wrapping_add((child.0 & Child::INDEX) as usize).cast::<i8>();
+        let first = if child.is_leaf() { block } else { node };
+        for line in 0..4 {
+            // SAFETY: no harm comes of any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(64 * line)) };
+        }
+    }
+}
+
 /// The first hit along the ray.
 #[inline(always)]
 pub(super) fn first_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
@@ -116,6 +132,10 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             let distances = t_near.store().0;
             // SAFETY: at most `WIDTH - 1` children wait.
             (current, waiting) = unsafe { push_sorted(&mut stack, waiting, mask, node, &distances) };
+            if bvh.is_large {
+                // SAFETY: at least one waits.
+                prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 1) }));
+            }
         }
         if current.is_leaf() {
             test_leaf((bvh, blocks), current, ray, &lanes, &mut best);
@@ -129,6 +149,10 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             let key = unsafe { stack.read(waiting) };
             if distance_of(key) <= best.t {
                 current = child_of(key);
+                if bvh.is_large && waiting > 0 {
+                    // SAFETY: what waits has been written.
+                    prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 1) }));
+                }
                 break;
             }
         }
@@ -270,6 +294,9 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
             // SAFETY: all children but one wait.
             unsafe { stack.write_all(waiting, L::packed(bytemuck::cast_ref(&node.children), others)) };
             waiting += others.count_ones() as usize;
+            if bvh.is_large && others != 0 {
+                prefetch(nodes, blocks, node.children[31 - others.leading_zeros() as usize]);
+            }
         }
         if current.is_leaf() && is_hit((bvh, blocks), current, ray, &lanes) {
             return true;
@@ -278,6 +305,10 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
             return false;
         }
         waiting -= 1;
+        if bvh.is_large && waiting > 0 {
+            // SAFETY: what waits has been written.
+            prefetch(nodes, blocks, Child(unsafe { stack.read(waiting - 1) }));
+        }
         // SAFETY: what waits has been written.
         current = Child(unsafe { stack.read(waiting) });
     }

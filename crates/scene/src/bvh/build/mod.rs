@@ -23,6 +23,9 @@ use split::{Place, Splitter};
 /// median, which adds at most 27 more.
 pub(super) const MAX_DEPTH: usize = split::SAH_DEPTH + 28;
 
+/// Bytes of a tree past which what waits is asked for beforehand.
+const LARGE: usize = 16 << 20;
+
 /// What the tree is built over.
 pub(super) struct Primitives<'a> {
     pub positions: &'a [Vec3],
@@ -63,6 +66,7 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
         root: Child::NONE,
         bounds: extent.bounds(),
         kernels: Kernels::best(),
+        is_large: false,
     };
     if references.is_empty() {
         return bvh;
@@ -90,5 +94,6 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
         let used = ids.into_iter().filter(|id| *id != NO_TRIANGLE);
         *block = TriangleBlock::new(used.map(|id| (id, primitives.corners(id))));
     });
+    bvh.is_large = bvh.memory() > LARGE;
     bvh
 }
