@@ -95,7 +95,7 @@ fn prefetch(nodes: &[Node], blocks: &[TriangleBlock], child: Child) {
         let node = nodes.as_ptr().wrapping_add(child.0 as usize & (Child::LEAF as usize - 1)).cast::<i8>();
         let block = blocks.as_ptr().wrapping_add((child.0 & Child::INDEX) as usize).cast::<i8>();
         let first = if child.is_leaf() { block } else { node };
-        for line in 0..4 {
+        for line in 0..5 {
             // SAFETY: no harm comes of any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(64 * line)) };
         }
@@ -152,6 +152,9 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
                 if bvh.is_large && waiting > 0 {
                     // SAFETY: what waits has been written.
                     prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 1) }));
+                    if waiting > 1 {
+                        prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 2) }));
+                    }
                 }
                 break;
             }
