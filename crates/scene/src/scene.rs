@@ -74,6 +74,7 @@ impl Scene {
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = &description.materials[shape.material.0 as usize].kind;
             flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
+            flat.needs_tangents = is_oriented(material);
         }
         let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();
@@ -359,6 +360,19 @@ pub(crate) fn texture_of(material: &MaterialKind) -> Option<&Texture> {
         | MaterialKind::RoughDielectric { .. }
         | MaterialKind::Conductor { .. }
         | MaterialKind::RoughConductor { .. } => None,
+    }
+}
+
+/// Whether a material scatters differently when the surface is turned about its normal.
+fn is_oriented(material: &MaterialKind) -> bool {
+    match material {
+        MaterialKind::Diffuse { .. }
+        | MaterialKind::Mirror { .. }
+        | MaterialKind::Dielectric { .. }
+        | MaterialKind::RoughDielectric { .. }
+        | MaterialKind::Conductor { .. }
+        | MaterialKind::RoughConductor { .. }
+        | MaterialKind::Microfacet { .. } => false,
     }
 }
 
