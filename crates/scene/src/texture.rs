@@ -18,7 +18,9 @@ impl TextureTable<'_> {
         match texture {
             Texture::Constant(c) => *c,
             Texture::Checkerboard { delta, scale, shear, value1, value2 } => {
-                let cell = |x: f32, y: f32, i: usize| (x / scale[i] + sheared(y, shear[i]) - delta[i]).floor() as i64;
+                let cell = |x: f32, y: f32, i: usize| {
+                    (x / scale[i] + sheared(y, shear[i]) - delta[i]).floor() as i64
+                };
                 let sum = cell(uv.x, uv.y, 0).wrapping_add(cell(uv.y, uv.x, 1));
                 if sum & 1 == 0 { *value1 } else { *value2 }
             }

@@ -48,8 +48,11 @@ pub(super) fn scatter(
         None if smooth => dirac(&v.bsdf, light, camera),
         None => Ok(rough(|l, c| v.bsdf.eval(l, c), (light, camera), blurs[0] + blurs[1])),
     }?;
+    // The BSDF's cosines may be less than the surface's.
+    let own = v.bump().map_or([light, camera], |bump| [light, camera].map(|d| in_frame(&bump, camera, d)));
+    let cosines = [light[2].abs().min(own[0][2].abs()), camera[2].abs().min(own[1][2].abs())];
     // A refracted cosine follows from the other one, and Fresnel's equations from both.
-    let shares = [light[2], camera[2]].map(|cos| if s.smooth { cos * cos } else { cos.abs() });
+    let shares = cosines.map(|cos| if s.smooth { cos * cos } else { cos });
     s.uncertainty += blurs[0] / shares[0] + blurs[1] / shares[1];
     s.value = s.value.map(|f| f / cos_g.abs());
     Ok(s)
@@ -97,11 +100,8 @@ fn straight(light: Vector, camera: Vector) -> Result<(), String> {
 
 /// Dirac lobes about a normal that is not the surface's own. Light walks take that normal or its mirror image by chance.
 fn bumped(bsdf: &Bsdf, bump: &Bump, light: Vector, camera: Vector) -> Result<Scattering, String> {
-    let n = wide(bump.normal);
-    let mirrored = bump.rule.flips && camera[2] * dot(camera, n) <= 0.0;
-    let f = bump.frame(mirrored);
-    let turned = |v: Vector| [wide(f.x), wide(f.y), wide(f.z)].map(|axis| dot(v, axis));
-    let (own_light, own_camera) = (turned(light), turned(camera));
+    let (n, mirrored) = (wide(bump.normal), is_mirrored(bump, camera));
+    let (own_light, own_camera) = (in_frame(bump, camera, light), in_frame(bump, camera, camera));
     if own_light[2] * light[2] <= 0.0 || own_camera[2] * camera[2] <= 0.0 {
         return Err("a direction is on different sides of the two normals".into());
     }
@@ -110,9 +110,18 @@ fn bumped(bsdf: &Bsdf, bump: &Bump, light: Vector, camera: Vector) -> Result<Sca
     let alpha2 = if bump.rule.shadows { (tan2(n) / 8.0).min(1.0) } else { 0.0 };
     s.value = s.value.map(|f| f * 2.0 / (1.0 + (1.0 + alpha2 * tan2(light)).sqrt()));
     s.to_camera_pdf *= if mirrored { f64::from(MIRRORED) } else { f64::from(bump.share(false)) };
-    // What the BSDF's own cosines blur.
-    s.uncertainty += 1e-6 / own_light[2].powi(2) + 1e-6 / own_camera[2].powi(2);
     Ok(s)
+}
+
+/// Whether the normal is mirrored for light that goes to `camera`.
+fn is_mirrored(bump: &Bump, camera: Vector) -> bool {
+    bump.rule.flips && camera[2] * dot(camera, wide(bump.normal)) <= 0.0
+}
+
+/// A direction in the frame of the normal that counts for light that goes to `camera`.
+fn in_frame(bump: &Bump, camera: Vector, direction: Vector) -> Vector {
+    let f = bump.frame(is_mirrored(bump, camera));
+    [f.x, f.y, f.z].map(|axis| dot(direction, wide(axis)))
 }
 
 /// All that is not Dirac. How well it is known shows when a direction changes a little.
