@@ -25,6 +25,7 @@ mod transform;
 mod tree;
 mod upgrade;
 mod value;
+mod wrapper;
 
 use caustica_scene::Diagnostic;
 
