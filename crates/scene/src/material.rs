@@ -41,16 +41,3 @@ pub fn bsdf_at(kind: &MaterialKind, textures: &TextureTable<'_>, uv: Vec2, w: Wa
         MaterialKind::Null | MaterialKind::Wrapped(_) => Bsdf::Null,
     }
 }
-
-/// Whether the material scatters by Dirac lobes alone.
-pub fn is_dirac(kind: &MaterialKind) -> bool {
-    match kind {
-        MaterialKind::Mirror { .. } | MaterialKind::Dielectric { .. } | MaterialKind::Conductor { .. } => {
-            true
-        }
-        MaterialKind::RoughDielectric { interior_ior, exterior_ior, .. } => interior_ior == exterior_ior,
-        MaterialKind::Diffuse { .. }
-        | MaterialKind::RoughConductor { .. }
-        | MaterialKind::Microfacet { .. } => false,
-    }
-}

@@ -12,7 +12,7 @@ use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
     SpotLight, Surroundings, power_through_disk,
 };
-use crate::material::{bsdf_at, is_dirac};
+use crate::material::bsdf_at;
 use crate::references;
 use crate::surface::{FlatShape, SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
@@ -91,7 +91,7 @@ impl Scene {
             (bounds.center(), ((bounds.max - bounds.center()).length() * 1.0001).max(f32::MIN_POSITIVE))
         };
         let materials = description.materials.iter().map(|m| m.kind).collect();
-        let is_caster = |shape: &FlatShape| is_dirac(&description.materials[shape.material as usize].kind);
+        let is_caster = |shape: &FlatShape| traits[shape.material as usize].is_caster;
         let casters = (0..).zip(&surfaces.shapes).filter(|(_, s)| is_caster(s)).map(|(i, _)| i);
         let casters = Casters::new(casters, &surfaces);
         let images = std::mem::take(&mut description.images);

@@ -23,6 +23,8 @@ pub(crate) struct Traits {
     pub bounds_a_medium: bool,
     /// Whether light that arrives from behind may go on.
     pub has_a_back: bool,
+    /// Whether it mirrors or refracts by a Dirac lobe.
+    pub is_caster: bool,
 }
 
 /// The traits of all materials.
@@ -69,6 +71,7 @@ fn find(
                 transmits: all.transmits || inner.transmits,
                 bounds_a_medium: all.bounds_a_medium || inner.bounds_a_medium,
                 has_a_back: all.has_a_back || inner.has_a_back,
+                is_caster: all.is_caster || inner.is_caster,
             };
         }
     }
@@ -82,14 +85,18 @@ fn of(kind: &MaterialKind) -> Traits {
     let own = Traits { uses_uv, ..Traits::default() };
     match kind {
         MaterialKind::Diffuse { .. }
-        | MaterialKind::Mirror { .. }
-        | MaterialKind::Conductor { .. }
         | MaterialKind::RoughConductor { .. }
         | MaterialKind::Microfacet { .. } => own,
-        MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => {
+        MaterialKind::Mirror { .. } | MaterialKind::Conductor { .. } => Traits { is_caster: true, ..own },
+        MaterialKind::RoughDielectric { .. } => {
             Traits { transmits: true, bounds_a_medium: true, has_a_back: true, ..own }
         }
-        MaterialKind::ThinDielectric { .. } => Traits { transmits: true, has_a_back: true, ..own },
+        MaterialKind::Dielectric { .. } => {
+            Traits { transmits: true, bounds_a_medium: true, has_a_back: true, is_caster: true, ..own }
+        }
+        MaterialKind::ThinDielectric { .. } => {
+            Traits { transmits: true, has_a_back: true, is_caster: true, ..own }
+        }
         MaterialKind::Null => Traits { is_wrapped: true, transmits: true, has_a_back: true, ..own },
         MaterialKind::Wrapped(wrapper) => match wrapper {
             Wrapper::Mask { .. } => Traits { is_mixed: true, transmits: true, has_a_back: true, ..own },

@@ -30,7 +30,7 @@ const AIMED: u64 = 1 << 20;
 /// The first of those of the places on the lens that the points of a light path are joined with.
 const JOINED: u64 = 1 << 16;
 /// The first of those that decide what the vertices are.
-const LABELS: u64 = 1 << 17;
+const LABELS: u64 = 1 << 40;
 
 /// The numbers of one bounce.
 pub(crate) struct Bounce {
@@ -123,8 +123,8 @@ impl EyeNumbers {
         (self.draw_if(self.needs.choice, group, CHOICE), self.draw(group, POINT))
     }
 
-    /// The vertex number, for [`Bounces::bounce`], from which aimed rays have theirs.
-    pub const AIMED_BOUNCES: usize = 1 << 21;
+    /// The first of the numbers of vertices that aimed rays find.
+    pub const AIMED_VERTICES: usize = 1 << 21;
 
     /// Of the directions in which rays are aimed from the surface vertex of that index.
     pub fn aimed(&mut self, vertex: usize) -> [f32; 2] {

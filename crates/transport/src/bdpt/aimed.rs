@@ -82,7 +82,7 @@ impl Kernel<'_> {
     fn follow<S: Sink>(
         &self,
         sample: &Sample<'_>,
-        (start, number): (usize, u32),
+        (start, ray): (usize, u32),
         (mut chain, numbers): (Chain<'_>, &mut EyeNumbers),
         sink: &mut S,
     ) -> Spectrum {
@@ -98,7 +98,9 @@ impl Kernel<'_> {
                 }
                 break;
             };
-            let mut vertex = Vertex::new(self.scene, point, -chain.ray.direction, self.wavelengths);
+            let number = aimed_vertex(start, ray, passed);
+            let label = || numbers.label(number);
+            let mut vertex = Vertex::new(self.scene, point, -chain.ray.direction, self.wavelengths, label);
             vertex.delta = true;
             if S::PROBES {
                 chain.eye.push(vertex);
@@ -112,7 +114,7 @@ impl Kernel<'_> {
                 break;
             }
             let roulette = edges >= self.roulette_start;
-            let bounce = numbers.aimed_bounce((start, number), passed, &vertex.bsdf, roulette);
+            let bounce = numbers.bounce(number, &vertex, roulette);
             let Some((direction, s, _)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
             chain.radiance_scale *= vertex.radiance_scale(direction);
             chain.left *= s.value * (1.0 / s.forward.0);
@@ -208,19 +210,7 @@ fn spread([u, v]: [f32; 2], ray: u32, rays: u32) -> [f32; 2] {
     [fraction(u + ray as f32 / rays as f32), fraction(v + ray as f32 * GOLDEN)]
 }
 
-impl EyeNumbers {
-    /// Of a vertex of an aimed ray's chain, with `passed` vertices before it.
-    fn aimed_bounce(
-        &mut self,
-        (start, number): (usize, u32),
-        passed: usize,
-        bsdf: &caustica_scene::bsdf::Bsdf,
-        roulette: bool,
-    ) -> crate::numbers::Bounce {
-        self.bounce(
-            EyeNumbers::AIMED_BOUNCES + ((start << 6 | number as usize) << 11 | passed),
-            bsdf,
-            roulette,
-        )
-    }
+/// Under which number a vertex of an aimed ray's chain draws, with `passed` vertices before it.
+fn aimed_vertex(start: usize, ray: u32, passed: usize) -> usize {
+    EyeNumbers::AIMED_VERTICES + ((start << 6 | ray as usize) << 11 | passed)
 }
