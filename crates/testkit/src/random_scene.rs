@@ -56,11 +56,12 @@ fn film(d: &mut Description, choices: &mut Choices) {
     });
     let radius = 0.1 + 3.0 * choices.unit();
     let parameter = if choices.is_wild() { *choices.pick(&PARAMETERS) } else { choices.signed() };
-    let filter = match choices.below(5) {
+    let filter = match choices.below(6) {
         0 => Filter::Box { radius: 0.5 },
         1 => Filter::Box { radius },
         2 => Filter::Tent { radius },
         3 => Filter::Gaussian { radius, stddev: parameter.abs().max(1e-6) },
+        4 => Filter::Lanczos { lobes: 1 + choices.below(4) as u32 },
         _ => Filter::Mitchell { radius, b: parameter, c: choices.signed() },
     };
     d.film = FilmSettings { width, height, crop, filter };
