@@ -5,7 +5,9 @@ use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, V
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, shears};
-use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
+use crate::description::{
+    Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialKind, Texture,
+};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
@@ -65,12 +67,12 @@ impl Scene {
         memory: MemoryLimit,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
-        let film = description.film.clone();
+        let film = film_of(&description, &mut warnings);
         memory::check(&description, tree, memory)?;
         references::check(&description)?;
         figures::check(&description)?;
-        let camera = Camera::new(&description.camera, &film)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
+        let camera = Camera::among(&surfaces, &description.camera, &film)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = &description.materials[shape.material.0 as usize].kind;
             flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
@@ -348,6 +350,17 @@ impl Scene {
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
+}
+
+/// The film. A meter's has no use for a filter: all pixels show the same.
+fn film_of(description: &Description, warnings: &mut Vec<Diagnostic>) -> FilmSettings {
+    let (mut film, pixel) = (description.film.clone(), Filter::Box { radius: 0.5 });
+    if description.camera.kind.is_meter() && film.filter != pixel {
+        film.filter = pixel;
+        let message = "a meter has no use for a pixel filter: each pixel is measured by itself";
+        warnings.push(Diagnostic::warning(message).at(description.camera.origin.clone()));
+    }
+    film
 }
 
 /// The texture that a material looks up, if it has one.
