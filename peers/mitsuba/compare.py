@@ -184,7 +184,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scenes", nargs="*", type=pathlib.Path)
     parser.add_argument("--samples", type=int, default=1024, help="a pixel")
-    parser.add_argument("--reference", type=int, default=2, help="how many times as many Mitsuba takes")
+    parser.add_argument("--reference", type=int, default=1, help="how many times as many Mitsuba takes")
     parser.add_argument("--integrators", default="path,bdpt")
     parser.add_argument("--program", type=pathlib.Path, default=ROOT / "target/release/caustica")
     parser.add_argument("--variant", help="of Mitsuba; llvm_ad_rgb if it can be had, else scalar_rgb")

@@ -160,7 +160,8 @@ fn irradiance_of_a_ball_under_the_sky() {
     for (i, way) in [Bdpt, Naive, Path, Light].into_iter().enumerate() {
         let plan = Plan { passes: 4000, block: 1, only: None };
         let e = estimate(&scene, &way.settings(3 + i as u64), plan);
-        let tolerance = if way == Light { 0.05 } else { 1e-4 };
+        // Eye paths alone have no noise: every direction has the same radiance.
+        let tolerance = if matches!(way, Naive | Path) { 1e-4 } else { 0.02 };
         let expected = 0.25 * std::f64::consts::PI;
         assert!((e.whole.mean / expected - 1.0).abs() < tolerance, "{way:?}: {}", e.whole.mean);
     }

@@ -11,7 +11,7 @@ use crate::surface::Surfaces;
 const MOST_PIXELS: f32 = 4096.0;
 
 /// Film positions keep so far off a pixel's edges, where directions have no density.
-const EDGE: f32 = 1e-6;
+const EDGE: f32 = 2e-7;
 
 /// The surface of an irradiance meter, whose points are chosen evenly by area. A place within a pixel, whichever,
 /// is a direction above the surface, by its cosine.

@@ -52,7 +52,7 @@ fn meter_density(scene: &Scene, c: &Contribution<'_>, seen: &Node<'_>) -> Result
     let (direction, normal) = (camera.to(seen).0, scene.camera.forward());
     let within = [c.film.x.fract(), c.film.y.fract()];
     let shown = Frame::from_normal(normal).to_world(warp::cosine_hemisphere(within));
-    if distance(wide(shown), direction) > 1e-3 {
+    if distance(wide(shown), direction) > 2e-3 {
         return Err(format!("{direction:?} is seen at {within:?}"));
     }
     Ok(dot(direction, wide(normal)).max(0.0) * std::f64::consts::FRAC_1_PI)
