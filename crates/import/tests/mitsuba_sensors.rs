@@ -146,6 +146,16 @@ fn channels_of_aov() {
 }
 
 #[test]
+fn names_of_old_versions() {
+    let text = "<scene version='0.5.0'><integrator type='direct'><integer name='luminaireSamples' value='0'/>\
+        <boolean name='hideEmitters' value='true'/></integrator><camera type='perspective'>\
+        <float name='principalPointOffsetX' value='.25'/><float name='nearClip' value='2'/></camera></scene>";
+    let d = good(text);
+    assert_eq!(d.integrator, Integrator::Direct(Technique::Materials));
+    assert_eq!((d.camera.principal_point, d.camera.near, d.camera.hides_lamps), ([0.25, 0.5], 2.0, true));
+}
+
+#[test]
 fn depths_of_wrapped_integrators_count() {
     let text = by("<integrator type='moment'><integrator type='path'><integer name='max_depth' value='3'/>\
         <integer name='rr_depth' value='2'/></integrator></integrator>");
