@@ -35,7 +35,7 @@ fn cameras_of_one_ray_and_light_paths() {
     let meter = "<sensor type='radiancemeter'><film type='hdrfilm'><integer name='width' value='1'/>\
         <integer name='height' value='1'/><rfilter type='box'/></film></sensor>";
     let rest = "<shape type='sphere'><point name='center' z='5'/></shape><emitter type='constant'/>";
-    bench.write("scene.xml", &format!("<scene version='3.0.0'>{meter}{rest}</scene>"));
+    bench.write("scene.xml", format!("<scene version='3.0.0'>{meter}{rest}</scene>"));
     let ran = bench.run(&["render", "scene.xml", "--spp", "1", "--integrator", "light", "-o", "a.exr"]).ok();
     assert!(ran.err.contains("no light path meets a camera of one ray"), "{}", ran.err);
     let (picture, _) = bench.render("b", &["--spp", "4", "--integrator", "bdpt"]);

@@ -265,17 +265,17 @@ impl Camera {
 
 impl Place {
     /// Camera frame to world direction.
-    fn to_world(&self, v: Vec3) -> Vec3 {
+    fn to_world(self, v: Vec3) -> Vec3 {
         self.axes[0] * v.x + self.axes[1] * v.y + self.axes[2] * v.z
     }
 
     /// World direction to the camera frame.
-    fn to_local(&self, v: Vec3) -> Vec3 {
+    fn to_local(self, v: Vec3) -> Vec3 {
         Vec3::new(v.dot(self.axes[0]), v.dot(self.axes[1]), v.dot(self.axes[2]))
     }
 
     /// Whether a point of the camera frame lies between the clip planes.
-    fn sees(&self, relative: Vec3) -> bool {
+    fn sees(self, relative: Vec3) -> bool {
         relative.z > self.near && relative.z <= self.far
     }
 }
