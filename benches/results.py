@@ -131,6 +131,16 @@ def table(options, folder):
     return "\n".join(rows), owns, notes
 
 
+OWN_SECTIONS = ("The reference work's picture", "What light paths buy")
+
+
+def sections_of_others(output):
+    """What the file holds beside the sections that are made here."""
+    text = output.read_text() if output.exists() else ""
+    sections = text.split("\n## ")[1:]
+    return "".join(f"\n## {s.rstrip()}\n" for s in sections if not s.startswith(OWN_SECTIONS))
+
+
 def main():
     options = parsed()
     with tempfile.TemporaryDirectory() as folder:
@@ -154,7 +164,7 @@ better choice; where `bdpt` is as good as its reference, none is told. *Trimmed*
 | scene | relMSE: `path` | `bdpt` | trimmed: `path` | `bdpt` | speed-up | trimmed | ꟻLIP: `path` | `bdpt` | reference's own |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|--:|
 {rows}
-""")
+{sections_of_others(options.output)}""")
     print(f"wrote {options.output}")
 
 

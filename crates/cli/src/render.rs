@@ -4,6 +4,7 @@ use std::process::ExitCode;
 use caustica::description::Integrator;
 use caustica::film::{Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
+use caustica::scene::camera::Joins;
 use caustica::session::{Stages, content_hash, integrator_by_name, integrator_name, provenance};
 use caustica::{LightImage, Picture, Progress, RenderOptions, Report, Scene, Session, Settings};
 use serde::Serialize;
@@ -140,6 +141,12 @@ fn setting_warnings(args: &Render, session: &Session<'_>) -> Vec<Diagnostic> {
         warnings.push(
             Diagnostic::warning(format!("`{name}` makes no {image} image here: the picture will be black"))
                 .hint("use `--light-image on`"),
+        );
+    }
+    if integrator == Integrator::Light && session.kernel().scene().camera.joins() == Joins::Nothing {
+        warnings.push(
+            Diagnostic::warning("no light path meets a camera of one ray: the picture will be black")
+                .hint("use `--integrator path` or `bdpt`"),
         );
     }
     warnings

@@ -106,7 +106,7 @@ fn renders_soundly(scene: &Scene, settings: &Settings) {
             assert_eq!(one.film().counts().invalid, 0, "{name}: contributions that are no numbers");
         }
         let picture = one.film().develop();
-        let may_be_negative = matches!(scene.film.filter, Filter::Mitchell { .. });
+        let may_be_negative = scene.film.filter.has_lobes();
         for (layer, pixels) in [("eye", &picture.eye), ("light", &picture.light)] {
             for (i, pixel) in pixels.iter().enumerate() {
                 let sound = pixel.0.iter().all(|c| c.is_finite() && (*c >= 0.0 || may_be_negative));

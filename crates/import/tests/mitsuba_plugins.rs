@@ -67,10 +67,6 @@ fn other_cameras() {
     let expected = CameraKind::ThinLens { fov: 30.0, aperture_radius: 0.1, focus_distance: 3.0 };
     assert_eq!((camera.kind, camera.near, camera.far), (expected, 1.0, 9.0));
     assert_eq!(good(&in_sensor("orthographic", "")).camera.kind, CameraKind::Orthographic);
-    warned(
-        &in_sensor("§perspective", "<float name='principal_point_offset_x' value='.1'/>"),
-        "principal point",
-    );
 }
 
 #[test]

@@ -129,6 +129,8 @@ fn camera_name(kind: &CameraKind) -> &'static str {
         CameraKind::ThinLens { .. } => "thinlens",
         CameraKind::Orthographic => "orthographic",
         CameraKind::Environment => "environment",
+        CameraKind::RadianceMeter => "radiancemeter",
+        CameraKind::IrradianceMeter { .. } => "irradiancemeter",
     }
 }
 

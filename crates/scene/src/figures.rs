@@ -104,7 +104,7 @@ fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic> {
 fn filter(film: &FilmSettings) -> Result<(), Diagnostic> {
     let radius = film.filter.radius();
     let shape = match film.filter {
-        Filter::Box { .. } | Filter::Tent { .. } => true,
+        Filter::Box { .. } | Filter::Tent { .. } | Filter::Lanczos { .. } => true,
         Filter::Gaussian { stddev, .. } => stddev > 0.0 && stddev.is_finite(),
         Filter::Mitchell { b, c, .. } => b.is_finite() && c.is_finite(),
     };

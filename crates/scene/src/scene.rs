@@ -6,7 +6,9 @@ use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, shears};
 use crate::casters::Casters;
-use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
+use crate::description::{
+    Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialKind, Texture,
+};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
@@ -69,13 +71,13 @@ impl Scene {
         memory: MemoryLimit,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
-        let film = description.film.clone();
+        let film = film_of(&description, &mut warnings);
         memory::check(&description, tree, memory)?;
         references::check(&description)?;
         figures::check(&description)?;
         let traits = traits::of_all(&description.materials)?;
-        let camera = Camera::new(&description.camera, &film)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
+        let camera = Camera::among(&surfaces, &description.camera, &film)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = traits[shape.material.0 as usize];
             flat.needs_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
@@ -393,4 +395,15 @@ impl Scene {
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
+}
+
+/// The film. A meter's has no use for a filter: all pixels show the same.
+fn film_of(description: &Description, warnings: &mut Vec<Diagnostic>) -> FilmSettings {
+    let (mut film, pixel) = (description.film.clone(), Filter::Box { radius: 0.5 });
+    if description.camera.kind.is_meter() && film.filter != pixel {
+        film.filter = pixel;
+        let message = "a meter has no use for a pixel filter: each pixel is measured by itself";
+        warnings.push(Diagnostic::warning(message).at(description.camera.origin.clone()));
+    }
+    film
 }

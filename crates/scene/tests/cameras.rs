@@ -5,8 +5,9 @@
 
 use caustica_math::stats::sidak;
 use caustica_math::{SampleStream, StreamId, Transform, Vec2, Vec3};
-use caustica_scene::camera::{Camera, CameraRay};
-use caustica_scene::description::{self, CameraKind, FilmSettings};
+use caustica_scene::camera::{Camera, CameraRay, Joins};
+use caustica_scene::description::{self, CameraKind, FilmSettings, Geometry, MaterialId, Mesh, Shape};
+use caustica_scene::surface::Surfaces;
 use caustica_testkit::chi_square::{ChiSquareConfig, chi_square_sphere};
 use caustica_testkit::seed::seed;
 
@@ -17,8 +18,25 @@ fn film() -> FilmSettings {
 }
 
 fn camera_at(kind: CameraKind, to_world: Transform) -> Camera {
-    let description = description::Camera { kind, to_world, near: 0.5, far: 80.0, origin: None };
-    Camera::new(&description, &film()).unwrap()
+    let description = description::Camera { kind, to_world, near: 0.5, far: 80.0, ..Default::default() };
+    Camera::among(&ground(), &description, &film()).unwrap()
+}
+
+/// What irradiance meters stand on: a plate that looks along (1, 2, 2)/3, of two triangles with the areas 1.5 (where
+/// x > 0) and 3; and a ball.
+fn ground() -> Surfaces {
+    let positions = [[2.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-4.0, 2.0, 1.0]].map(Vec3::from);
+    let mesh = Mesh { positions: positions.into(), triangles: vec![[0, 1, 2], [1, 3, 2]], ..Mesh::default() };
+    let ball = Geometry::Sphere { center: Vec3::new(0.5, -1.0, 2.0), radius: 0.75 };
+    let shape = |geometry| Shape {
+        name: "ground".into(),
+        geometry,
+        to_world: Transform::IDENTITY,
+        material: MaterialId(0),
+        emission: None,
+        origin: None,
+    };
+    Surfaces::new(&mut [shape(Geometry::Mesh(mesh)), shape(ball)], &mut Vec::new()).unwrap()
 }
 
 fn camera(kind: CameraKind) -> Camera {
@@ -36,12 +54,34 @@ fn next(kind: Option<CameraKind>) -> Option<CameraKind> {
         }
         Some(CameraKind::ThinLens { .. }) => Some(CameraKind::Orthographic),
         Some(CameraKind::Orthographic) => Some(CameraKind::Environment),
-        Some(CameraKind::Environment) => None,
+        Some(CameraKind::Environment) => Some(CameraKind::RadianceMeter),
+        Some(CameraKind::RadianceMeter) => Some(CameraKind::IrradianceMeter { shape: 0 }),
+        Some(CameraKind::IrradianceMeter { shape: 0 }) => Some(CameraKind::IrradianceMeter { shape: 1 }),
+        Some(CameraKind::IrradianceMeter { .. }) => None,
     }
 }
 
-fn kinds() -> impl Iterator<Item = CameraKind> {
+fn all() -> impl Iterator<Item = CameraKind> {
     std::iter::successors(next(None), |k| next(Some(*k)))
+}
+
+/// Those that show pictures.
+fn kinds() -> impl Iterator<Item = CameraKind> {
+    all().filter(|k| !k.is_meter())
+}
+
+/// Those that light paths can be joined with.
+fn joinable() -> impl Iterator<Item = CameraKind> {
+    all().filter(|k| *k != CameraKind::RadianceMeter)
+}
+
+/// The distance of two film positions; all pixels of an irradiance meter are one.
+fn apart(camera: &Camera, a: Vec2, b: Vec2) -> f32 {
+    let distance = |a: Vec2| (a.x - b.x).abs().max((a.y - b.y).abs());
+    if camera.response() == 1.0 {
+        return distance(a);
+    }
+    camera.aliases(a, 0.0).map(distance).fold(f32::INFINITY, f32::min)
 }
 
 fn random(name: u32) -> SampleStream {
@@ -58,20 +98,22 @@ fn near(a: f32, b: f32, tolerance: f32) -> bool {
 
 #[test]
 fn connections_reverse_rays() {
-    for kind in kinds() {
+    for kind in joinable() {
         let camera = camera(kind);
         let mut s = random(1);
         for _ in 0..5000 {
             let (film, u) = (on_film(s.next_2d()), s.next_2d());
             let ray = camera.ray(film, u);
-            let t = (0.01 + 0.98 * s.next_1d()) * ray.t_max;
+            let t = (0.01 + 0.98 * s.next_1d()) * ray.t_max.min(80.0);
             let p = ray.origin + ray.direction * t;
             let link = camera.connect(p, u).expect("a point on a ray is seen");
             let name = format!("{kind:?} at {film:?}: {link:?} for {ray:?}");
             assert_eq!(link.point, ray.point, "{name}");
-            assert!((link.film.x - film.x).abs() < 2e-3 && (link.film.y - film.y).abs() < 2e-3, "{name}");
-            assert!((link.direction + ray.direction).length() < 1e-5, "{name}");
-            assert!(near(link.pdf.0, ray.pdf.0, 1e-3), "{name}");
+            assert!(apart(&camera, link.film, film) < 2e-3, "{name}");
+            // A meter's rays start off its surface, by a few millionths.
+            let blur = if kind.is_meter() { 1e-5 / t } else { 0.0 };
+            assert!((link.direction + ray.direction).length() < 1e-5 + blur, "{name}");
+            assert!((link.pdf.0 - ray.pdf.0).abs() < 1e-3 * ray.pdf.0 + blur, "{name}");
             assert!((link.end - ray.origin).length() < 2e-5, "{name}");
             let d2 = (p - ray.point.at).length_squared();
             assert!(near(link.falloff, if ray.point.infinite { 1.0 } else { 1.0 / d2 }, 1e-4), "{name}");
@@ -91,23 +133,25 @@ fn check_infinity(camera: &Camera, ray: &CameraRay, film: Vec2, u: [f32; 2]) {
     let link = link.unwrap();
     assert_eq!(link.point, ray.point);
     assert_eq!(link.direction, -ray.direction);
-    assert!((link.film.x - film.x).abs() < 2e-3 && (link.film.y - film.y).abs() < 2e-3, "{film:?} {link:?}");
+    assert!(apart(camera, link.film, film) < 2e-3, "{film:?} {link:?}");
     assert!(near(link.pdf.0, ray.pdf.0, 1e-3) && link.falloff == 1.0, "{link:?} {ray:?}");
-    assert!((link.end - ray.origin).length() < 1e-5 && near(link.t_max, ray.t_max, 1e-5));
+    let same_end = link.t_max == ray.t_max || near(link.t_max, ray.t_max, 1e-5);
+    assert!((link.end - ray.origin).length() < 1e-5 && same_end);
     let behind = camera.connect_direction(-ray.direction, u);
-    let around = camera.aliases(Vec2::new(0.0, 3.0), 1.0).count() > 1;
+    let around = camera.wraps() && camera.response() == 1.0;
     assert_eq!(behind.is_some(), around, "only a 360° picture shows what is behind");
 }
 
 /// Uniform places on the film have directions of the density that is told.
 #[test]
 fn densities_are_those_of_the_film() {
-    let kinds: Vec<_> = kinds().filter(|k| *k != CameraKind::Orthographic).collect();
+    let kinds: Vec<_> = joinable().filter(|k| *k != CameraKind::Orthographic).collect();
     let alpha = sidak(0.01, 2 * kinds.len());
-    let area = f64::from(SIZE[0] * SIZE[1]);
     for kind in kinds {
         for lens in [[0.5, 0.5], [0.9, 0.2]] {
             let camera = camera(kind);
+            // All pixels of a meter are the same.
+            let area = if kind.is_meter() { 1.0 } else { f64::from(SIZE[0] * SIZE[1]) };
             let mut sample = |u: [f32; 3]| Some(camera.ray(on_film([u[0], u[1]]), lens).direction);
             let pdf = |d: Vec3| {
                 let Some(link) = camera.connect_direction(d, lens) else { return 0.0 };
@@ -237,4 +281,83 @@ fn poles_are_precise() {
         assert!(near(far.film.y, y, 1e-4) && near(far.pdf.0, ray.pdf.0, 1e-4), "{y}: {far:?} {ray:?}");
         assert!(near(link.film.y, y, 1e-2) && near(link.pdf.0, ray.pdf.0, 1e-2), "{y}: {link:?} {ray:?}");
     }
+}
+
+/// The principal point is where +z is seen; nothing else moves.
+#[test]
+fn lenses_can_be_shifted() {
+    let pinhole = CameraKind::Perspective { fov: 60.0 };
+    for kind in [Some(pinhole), next(Some(pinhole))].into_iter().flatten() {
+        let place = |principal_point| {
+            let d = description::Camera { kind, principal_point, ..Default::default() };
+            Camera::new(&d, &film()).unwrap()
+        };
+        let (shifted, centred) = (place([0.25, 0.6]), place([0.5, 0.5]));
+        let ahead = shifted.connect(Vec3::new(0.0, 0.0, 5.0), [0.5; 2]).unwrap().film;
+        assert!(apart(&shifted, ahead, Vec2::new(10.0, 0.6 * SIZE[1])) < 1e-4, "{ahead:?}");
+        let mut s = random(6);
+        for _ in 0..1000 {
+            let (film, u) = (on_film(s.next_2d()), s.next_2d());
+            let moved = Vec2::new(film.x - 10.0, film.y + 0.1 * SIZE[1]);
+            let (a, b) = (shifted.ray(moved, u), centred.ray(film, u));
+            assert!(
+                (a.direction - b.direction).length() < 1e-5 && near(a.pdf.0, b.pdf.0, 1e-4),
+                "{a:?} {b:?}"
+            );
+            let link = shifted.connect(a.origin + a.direction * 3.0, u).unwrap();
+            assert!(apart(&shifted, link.film, moved) < 2e-3 && near(link.pdf.0, a.pdf.0, 1e-3), "{link:?}");
+        }
+    }
+}
+
+/// A radiance meter has one ray, whatever the film position, and cannot be joined.
+#[test]
+fn radiance_meters_have_one_ray() {
+    let camera = camera_at(CameraKind::RadianceMeter, Transform::translate([1.0, 2.0, 3.0]));
+    let mut s = random(7);
+    for _ in 0..100 {
+        let (film, u) = (on_film(s.next_2d()), s.next_2d());
+        let ray = camera.ray(film, u);
+        assert_eq!((ray.origin, ray.direction, ray.t_max), (Vec3::new(1.0, 2.0, 3.5), Vec3::Z, 79.5));
+        let ahead = ray.origin + ray.direction * s.next_1d();
+        assert!(camera.connect(ahead, u).is_none() && camera.connect_direction(Vec3::Z, u).is_none());
+    }
+    let joins: Vec<Joins> = all().map(|k| camera_at(k, Transform::IDENTITY).joins()).collect();
+    let [all, near, nothing] = [Joins::All, Joins::Near, Joins::Nothing];
+    assert_eq!(joins, [all, all, near, all, nothing, all, all]);
+}
+
+/// The points of an irradiance meter are spread evenly over the area, and look off its surface; each pixel shows all
+/// directions.
+#[test]
+fn irradiance_meters_cover_their_surface() {
+    let n = 40_000;
+    let [plate, ball] =
+        [0, 1].map(|shape| camera_at(CameraKind::IrradianceMeter { shape }, Transform::IDENTITY));
+    let (mut s, mut middle, mut small) = (random(8), Vec3::ZERO, 0);
+    for i in 0..n {
+        let (film, u) = (on_film(s.next_2d()), s.next_2d());
+        let ray = plate.ray(film, u);
+        let p = ray.point.at;
+        assert!((p.x + 2.0 * p.y + 2.0 * p.z - 2.0).abs() < 1e-5, "{p:?} lies on the plate");
+        assert!(ray.direction.dot(plate.forward()) > 0.0);
+        small += u32::from(p.x > 0.0);
+        let ray = ball.ray(film, u);
+        let off = ray.point.at - Vec3::new(0.5, -1.0, 2.0);
+        assert!((off.length() - 0.75).abs() < 1e-5 && off.dot(ray.direction) > 0.0, "{ray:?}");
+        middle += off * (1.0 / n as f32);
+        if i < 20 {
+            let others: Vec<Vec2> = plate.aliases(film, 0.5).collect();
+            assert_eq!(others.len(), (SIZE[0] * SIZE[1]) as usize);
+            let direction = |f: Vec2| plate.ray(f, u).direction;
+            assert!(others.iter().all(|f| (direction(*f) - direction(film)).length() < 1e-3));
+        }
+    }
+    let (share, expected) = (f64::from(small) / f64::from(n), 1.0 / 3.0);
+    assert!((share - expected).abs() < 4.0 * (expected * (1.0 - expected) / f64::from(n)).sqrt(), "{share}");
+    assert!(middle.length() < 0.02, "{middle:?}");
+    assert_eq!([plate.response(), ball.response()], [std::f32::consts::PI; 2]);
+    let kind = CameraKind::IrradianceMeter { shape: 0 };
+    let alone = Camera::new(&description::Camera { kind, ..Default::default() }, &film());
+    assert!(alone.unwrap_err().to_string().contains("a shape of the scene"));
 }

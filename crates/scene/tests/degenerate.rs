@@ -275,6 +275,8 @@ fn filters_that_are_none() {
         Filter::Box { radius: 0.0 },
         Filter::Tent { radius: NAN },
         Filter::Tent { radius: 1e9 },
+        Filter::Lanczos { lobes: 0 },
+        Filter::Lanczos { lobes: 33 },
         Filter::Gaussian { radius: 2.0, stddev: 0.0 },
         Filter::Mitchell { radius: 2.0, b: NAN, c: 0.0 },
     ] {

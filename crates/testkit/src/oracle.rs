@@ -17,16 +17,18 @@
 //! Everything is computed from positions in `f64`, from the evaluation functions of BSDFs, lamps and cameras.
 //! No code is shared with the transport crate, nor with the smooth surfaces.
 
+mod film;
 mod scattering;
 
-use caustica_math::{Spectrum, Vec2, Vec3, Wavelengths, warp};
+use caustica_math::{Spectrum, Vec3, Wavelengths};
 use caustica_scene::Scene;
-use caustica_scene::camera::{CameraLink, CameraPoint};
+use caustica_scene::camera::{CameraPoint, Joins};
 use caustica_scene::light::{Anchor, EmissionPdf, LightPoint};
 use caustica_scene::surface::SurfacePoint;
 use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Heuristic, Strategy, StrategySet};
 
+use film::film_density;
 use scattering::{Scattering, scatter};
 
 type Vector = [f64; 3];
@@ -203,7 +205,8 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     };
     let window = scene.film.window();
     let mut densities: Vec<f64> = (0..=k).map(|i| density(i, &scatterings, &edges, &starts)).collect();
-    densities[k] *= f64::from(window.width) * f64::from(window.height);
+    let joinable = scene.camera.joins() != Joins::Nothing;
+    densities[k] *= if joinable { f64::from(window.width) * f64::from(window.height) } else { 0.0 };
     // A spot alone differs by direction, by the cosine to its axis: that of a shortened vector is less.
     let dimmed = lights.radiance(lamp, narrow(emitted.map(|c| c * (1.0 - 4.0 * edges[0].blur))));
     let dimming = (1.0 - lanes(dimmed)[0] / radiance[0]).abs();
@@ -312,35 +315,4 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     nodes.extend(eye.iter().rev().map(surface));
     nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, offset: 0.0, surface: None });
     Ok(nodes)
-}
-
-/// Film area in pixels per solid angle (or area) of the camera's rays to `seen`, from the camera's point on the
-/// path. Checks that it is seen where the contribution says.
-fn film_density(scene: &Scene, c: &Contribution<'_>, seen: &Node<'_>) -> Result<f64, String> {
-    let camera = &scene.camera;
-    let link = |u: [f32; 2]| -> Result<CameraLink, String> {
-        let at = narrow(seen.at);
-        let link = if seen.infinite { camera.connect_direction(at, u) } else { camera.connect(at, u) };
-        link.ok_or_else(|| "the camera cannot see the path".into())
-    };
-    // The lens is spanned by where these samples of the unit square lie on it.
-    let center = wide(link([0.5; 2])?.point.at);
-    let radius = |u| link(u).map(|l| plus(wide(l.point.at), center, -1.0));
-    let (x, y) = (radius([1.0, 0.5])?, radius([0.5, 1.0])?);
-    let area = dot(x, x);
-    let mut u = [0.5; 2];
-    if area > 0.0 {
-        let d = plus(wide(c.path.camera.at), center, -1.0);
-        u = warp::inverse_concentric_disk(Vec2::new((dot(d, x) / area) as f32, (dot(d, y) / area) as f32));
-    }
-    let link = link(u)?;
-    if distance(wide(link.point.at), wide(c.path.camera.at)) > 1e-3 {
-        return Err("the camera's point is not on the lens".into());
-    }
-    // At the poles of a 360° picture, rounding of a direction moves far.
-    let near = |a: &Vec2| (a.x - link.film.x).hypot(a.y - link.film.y) < 0.02 + 1e-6 * link.pdf.get();
-    if !camera.aliases(c.film, 1e6).any(|a| near(&a)) {
-        return Err(format!("seen at {:?} and not at {:?}", link.film, c.film));
-    }
-    Ok(link.pdf.get().into())
 }

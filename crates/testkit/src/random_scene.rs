@@ -56,11 +56,12 @@ fn film(d: &mut Description, choices: &mut Choices) {
     });
     let radius = 0.1 + 3.0 * choices.unit();
     let parameter = if choices.is_wild() { *choices.pick(&PARAMETERS) } else { choices.signed() };
-    let filter = match choices.below(5) {
+    let filter = match choices.below(6) {
         0 => Filter::Box { radius: 0.5 },
         1 => Filter::Box { radius },
         2 => Filter::Tent { radius },
         3 => Filter::Gaussian { radius, stddev: parameter.abs().max(1e-6) },
+        4 => Filter::Lanczos { lobes: 1 + choices.below(4) as u32 },
         _ => Filter::Mitchell { radius, b: parameter, c: choices.signed() },
     };
     d.film = FilmSettings { width, height, crop, filter };
@@ -72,7 +73,7 @@ fn camera(d: &mut Description, scale: f32, choices: &mut Choices) {
     } else {
         5.0 + 165.0 * choices.unit()
     };
-    let kind = match choices.below(4) {
+    let kind = match choices.below(6) {
         0 => CameraKind::Perspective { fov },
         1 => CameraKind::ThinLens {
             fov,
@@ -80,6 +81,8 @@ fn camera(d: &mut Description, scale: f32, choices: &mut Choices) {
             focus_distance: (0.1 + 4.0 * choices.unit()) * scale,
         },
         2 => CameraKind::Orthographic,
+        3 => CameraKind::RadianceMeter,
+        4 => CameraKind::IrradianceMeter { shape: 0 },
         _ => CameraKind::Environment,
     };
     let s = f64::from(scale);
@@ -94,7 +97,10 @@ fn camera(d: &mut Description, scale: f32, choices: &mut Choices) {
     if kind == CameraKind::Orthographic {
         to_world = Transform::scale([2.0 * s; 3]).then(to_world);
     }
-    d.camera = Camera { kind, to_world, near: 1e-4 * scale, far: 1e4 * scale, origin: None };
+    let principal_point = if choices.once_in(4) { [choices.unit(), choices.unit()] } else { [0.5; 2] };
+    let hides_lamps = choices.once_in(8);
+    let (near, far) = (1e-4 * scale, 1e4 * scale);
+    d.camera = Camera { kind, to_world, near, far, principal_point, hides_lamps, origin: None };
 }
 
 fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {

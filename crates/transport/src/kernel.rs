@@ -4,7 +4,7 @@ use caustica_math::filter::PixelFilter;
 use caustica_math::{Rgb, SampleId, Sampler, Spectrum, Vec2, Wavelengths};
 use caustica_scene::Scene;
 use caustica_scene::bvh::Ray;
-use caustica_scene::camera::CameraRay;
+use caustica_scene::camera::{CameraRay, Joins};
 use caustica_scene::description::Integrator;
 
 use crate::bdpt::Candidates;
@@ -105,7 +105,7 @@ pub struct Scratch {
 /// One eye path's beginning.
 pub(crate) struct EyeSample {
     pub film: Vec2,
-    /// The filter's sign and size, by which the sample counts.
+    /// The filter's sign and size and the camera's response, by which the sample counts.
     pub filter_weight: f32,
     pub ray: CameraRay,
     pub numbers: EyeNumbers,
@@ -113,8 +113,11 @@ pub(crate) struct EyeSample {
 
 impl<'a> Kernel<'a> {
     /// A kernel for that scene.
-    pub fn new(scene: &'a Scene, settings: Settings) -> Self {
+    pub fn new(scene: &'a Scene, mut settings: Settings) -> Self {
         let window = scene.film.window();
+        if scene.camera.joins() == Joins::Nothing {
+            settings.strategies = settings.strategies.without_splats();
+        }
         let exhaustive = settings.exhaustive_weights || settings.strategies.classes().is_none();
         let aims = !exhaustive && !scene.casters().is_empty();
         Self {
@@ -183,7 +186,7 @@ impl<'a> Kernel<'a> {
         let [x, y] = id.pixel.map(|c| c as f32 + 0.5);
         let film = Vec2::new(x + offset.x, y + offset.y);
         let ray = self.scene.camera.ray(film, numbers.lens());
-        EyeSample { film, filter_weight, ray, numbers }
+        EyeSample { film, filter_weight: filter_weight * self.scene.camera.response(), ray, numbers }
     }
 
     /// The first flight of a camera walk.
@@ -229,7 +232,7 @@ impl<'a> Kernel<'a> {
         if !value.is_valid() || (film.x + film.y).is_nan() {
             return sink.invalid();
         }
-        let rgb = self.wavelengths.rgb(value);
+        let rgb = self.wavelengths.rgb(value) * self.scene.camera.response();
         if !self.scene.camera.wraps() {
             return sink.splat(film, rgb);
         }

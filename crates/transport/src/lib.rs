@@ -8,6 +8,7 @@ mod bdpt;
 mod direct_views;
 pub mod edge;
 pub mod fault;
+mod hidden;
 mod kernel;
 mod light_tracer;
 mod numbers;

@@ -57,7 +57,7 @@ impl Kernel<'_> {
         }
         let Some((link, scatter)) = self.camera_link(vertex, lens) else { return };
         let value = throughput * scatter.value * (link.pdf.0 * link.falloff / self.light_paths);
-        if self.scene.visible(vertex.point.off_surface(link.direction), link.end) {
+        if self.is_seen_from_camera(&vertex.point, &link) {
             self.splat(link.film, value, sink);
         }
     }

@@ -59,8 +59,11 @@ impl Kernel<'_> {
         let mut sum = Spectrum::ZERO;
         let mut arrival = Arrival::Sure;
         for edges in 1..=max_edges {
-            let Some(point) = self.scene.closest(&ray) else {
-                sum += throughput * self.environment(&ray, &arrival, technique);
+            let found = if edges == 1 { self.first_seen(&ray) } else { self.scene.closest(&ray) };
+            let Some(point) = found else {
+                if edges > 1 || !self.scene.camera.hides_lamps() {
+                    sum += throughput * self.environment(&ray, &arrival, technique);
+                }
                 break;
             };
             let label = || numbers.label(edges - 1);

@@ -52,6 +52,7 @@ pub struct Contribution<'a> {
     /// Where on the film it goes, in pixels: the sample's own position for t ≥ 2.
     pub film: Vec2,
     /// By what the pixel filter multiplies it in [`Sink::eye`]; 1 for t = 1, which is filtered where it is splatted.
+    /// Either way it is multiplied by [the camera's response](caustica_scene::camera::Camera::response) too.
     pub filter_weight: f32,
     /// The path.
     pub path: PathView<'a>,

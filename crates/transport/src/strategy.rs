@@ -123,6 +123,19 @@ impl StrategySet {
         set
     }
 
+    /// The set without t = 1, for cameras that light paths cannot be joined with.
+    #[must_use]
+    pub fn without_splats(&self) -> Self {
+        let eye = Condition { of_light: false, comparison: Comparison::GreaterOrEqual, bound: 2 };
+        let alternatives = self.alternatives.iter().map(|all| {
+            let mut all = all.clone();
+            all.push(eye);
+            all
+        });
+        let text = if self.is_all() { "t>=2".into() } else { self.text.clone() };
+        Self::from_parts(text, alternatives.collect())
+    }
+
     fn matches(&self, strategy: Strategy) -> bool {
         self.alternatives.iter().any(|all| all.iter().all(|c| c.holds(strategy)))
     }
@@ -254,6 +267,19 @@ mod tests {
         for text in ["2,3", "s<3", "s=1", "t>=3", "s=4"] {
             assert!(set(text).classes().is_none(), "{text}");
         }
+    }
+
+    #[test]
+    fn splats_can_be_left_out() {
+        assert_eq!(set("all").without_splats(), set("t>=2"));
+        for text in ["s=0;s=1", "t=1", "2,3;4,1"] {
+            let (with, without) = (set(text), set(text).without_splats());
+            for strategy in (0..6).flat_map(|s| (1..6).map(move |t| Strategy { s, t })) {
+                let expected = with.contains(strategy) && strategy.t != 1;
+                assert_eq!(without.contains(strategy), expected, "{text}: {strategy}");
+            }
+        }
+        assert!(!set("t=1").without_splats().touched().splat);
     }
 
     #[test]

@@ -99,8 +99,10 @@ impl Kernel<'_> {
         let max_edges = self.max_edges - usize::from(walk == Walk::FromLight);
         let first_throughput = flight.throughput.max_lane();
         while path.vertices.len() < max_edges {
-            let Some(point) = self.scene.closest(&flight.ray) else {
-                if walk == Walk::FromCamera {
+            let first = walk == Walk::FromCamera && path.vertices.is_empty();
+            let found = if first { self.first_seen(&flight.ray) } else { self.scene.closest(&flight.ray) };
+            let Some(point) = found else {
+                if walk == Walk::FromCamera && !(first && self.scene.camera.hides_lamps()) {
                     path.escape = Some(self.escape(&flight, path.vertices.last()));
                 }
                 return;

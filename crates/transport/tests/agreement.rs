@@ -159,6 +159,50 @@ fn cameras() {
 }
 
 #[test]
+fn shifted_lenses_and_hidden_lamps() {
+    let mut d = ball(metal_kind(Some(0.3)));
+    d.camera.principal_point = [0.3, 0.6];
+    check("shifted", d, 400, &[Bdpt, Path, Light]);
+    let mut d = open_box();
+    d.camera.hides_lamps = true;
+    caustica_testkit::build::light(&mut d, LightKind::Constant { radiance: Rgb::splat(0.4) });
+    check("hidden", d, 400, &[Bdpt, Naive, Path, Light, NoLightImage, ODD]);
+}
+
+#[test]
+fn meters() {
+    let mut d = ball(metal_kind(Some(0.3)));
+    let shape = d.shapes.len() as u32 - 1;
+    (d.film.width, d.film.height) = (4, 4);
+    d.film.filter = Filter::Box { radius: 0.5 };
+    d.camera.kind = CameraKind::IrradianceMeter { shape };
+    check("irradiance", d.clone(), 2000, &[Bdpt, Naive, Path, Light, ODD]);
+    d.camera.kind = CameraKind::RadianceMeter;
+    check("radiance", d, 2000, &[Bdpt, Naive, Path, NoLightImage, ODD]);
+}
+
+/// A ball under a sky of radiance L gets the irradiance πL everywhere.
+#[test]
+fn irradiance_of_a_ball_under_the_sky() {
+    let mut d = caustica_testkit::build::scene(2);
+    let m =
+        d.add_material(caustica_scene::description::MaterialKind::Diffuse { albedo: Rgb::splat(0.5).into() });
+    let shape = caustica_testkit::build::sphere(&mut d, [0.5, 1.0, -2.0], 0.7, m) as u32;
+    caustica_testkit::build::light(&mut d, LightKind::Constant { radiance: Rgb::splat(0.25) });
+    d.camera.kind = CameraKind::IrradianceMeter { shape };
+    d.film.filter = Filter::Box { radius: 0.5 };
+    let scene = flatten(d);
+    for (i, way) in [Bdpt, Naive, Path, Light].into_iter().enumerate() {
+        let plan = Plan { passes: 4000, block: 1, only: None };
+        let e = estimate(&scene, &way.settings(3 + i as u64), plan);
+        // Eye paths alone have no noise: every direction has the same radiance.
+        let tolerance = if matches!(way, Naive | Path) { 1e-4 } else { 0.02 };
+        let expected = 0.25 * std::f64::consts::PI;
+        assert!((e.whole.mean / expected - 1.0).abs() < tolerance, "{way:?}: {}", e.whole.mean);
+    }
+}
+
+#[test]
 fn crop_window_and_wide_filter() {
     let mut d = ball(plastic_kind());
     (d.film.width, d.film.height) = (40, 30);

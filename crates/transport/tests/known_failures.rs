@@ -502,6 +502,7 @@ fn pixel_filters() {
     let filters = [
         Filter::Gaussian { radius: 3.0, stddev: 1.5 },
         Filter::Mitchell { radius: 2.5, b: 1.0 / 3.0, c: 1.0 / 3.0 },
+        Filter::Lanczos { lobes: 2 },
         Filter::Tent { radius: 2.0 },
         Filter::Box { radius: 1.3 },
     ];

@@ -460,6 +460,37 @@ fn cameras() {
     verify("lens under a sky", d);
 }
 
+/// A window in a wall of the room measures what falls on it; a meter without extent sees one point of the room.
+#[test]
+fn meters() {
+    let mut d = studio(CameraKind::Orthographic);
+    let window = quad(&mut d, [-0.3, -0.4, -0.95], [0.6, 0.0, 0.0], [0.0, 0.2, 0.0], MaterialId(0));
+    d.camera.kind = CameraKind::IrradianceMeter { shape: window as u32 };
+    d.film.filter = Filter::Box { radius: 0.5 };
+    verify("irradiance", d.clone());
+    (d.film.width, d.film.height) = (1, 1);
+    verify("irradiance of one pixel", d);
+    let mut d = lit(&[environment]);
+    d.film.filter = Filter::Box { radius: 0.5 };
+    d.camera.kind = CameraKind::RadianceMeter;
+    // It sees the rough glass, and no lamp.
+    let splat_or_seen = |s: Strategy| s.t == 1 || s == Strategy { s: 0, t: 2 };
+    verify_without(splat_or_seen, "radiance", d);
+}
+
+/// Lamps that are not seen, whose light is.
+#[test]
+fn hidden_lamps() {
+    let seen = |s: Strategy| s.s + s.t == 2;
+    let mut d = studio(THIN_LENS);
+    d.camera.hides_lamps = true;
+    verify_without(seen, "hidden lamp", d);
+    let mut d = lit(&[sky]);
+    lamp(&mut d);
+    d.camera.hides_lamps = true;
+    verify_without(seen, "hidden sky", d);
+}
+
 #[test]
 fn films() {
     let mut d = studio(THIN_LENS);
@@ -467,5 +498,7 @@ fn films() {
     (d.film.width, d.film.height) = (16, 12);
     d.film.crop = Some(Crop { x: 3, y: 2, width: 9, height: 8 });
     d.camera.near = 0.1;
-    verify("crop", d);
+    verify("crop", d.clone());
+    d.camera.principal_point = [0.3, 0.6];
+    verify("shifted lens", d);
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use caustica_scene::Scene;
+use caustica_scene::camera::Joins;
 use caustica_scene::light::LightPoint;
 use caustica_transport::{Contribution, Strategy};
 
@@ -125,17 +126,18 @@ impl PathClass {
     }
 
     /// Whether a strategy makes such paths: both vertices that it joins must be D, the lamp's end must be there to be
-    /// hit if s = 0, and must have a place on the film if both ends are joined directly.
-    pub fn is_made_by(&self, strategy: Strategy, parallel_camera: bool) -> bool {
+    /// hit if s = 0, and must have a place on the film if they are joined with the camera.
+    pub fn is_made_by(&self, strategy: Strategy, camera: Joins) -> bool {
         let Strategy { s, t } = strategy;
         if s + t != self.length + 2 || t == 0 {
             return false;
         }
         match (s, t) {
+            (_, 1) if camera == Joins::Nothing => false,
             (0, _) => self.lamp != LampEnd::Dirac,
             (1, 1) => match self.lamp {
                 LampEnd::Surface => true,
-                LampEnd::Environment => !parallel_camera,
+                LampEnd::Environment => camera == Joins::All,
                 LampEnd::Dirac => false,
             },
             (1, _) => self.first(),
@@ -210,7 +212,7 @@ mod tests {
             let class = class(lamp, text);
             let n = class.len() + 2;
             let strategies = (0..n).map(|s| Strategy { s, t: n - s });
-            strategies.filter(|s| class.is_made_by(*s, false)).map(|s| (s.s, s.t)).collect()
+            strategies.filter(|s| class.is_made_by(*s, Joins::All)).map(|s| (s.s, s.t)).collect()
         };
         assert_eq!(made(Surface, ""), [(0, 2), (1, 1)]);
         assert_eq!(made(Dirac, ""), []);
@@ -222,14 +224,15 @@ mod tests {
         assert_eq!(made(Dirac, "SDDS"), [(3, 3)]);
         assert_eq!(made(Environment, "DDS"), [(0, 5), (1, 4), (2, 3)]);
         let direct = class(Environment, "");
-        assert!(!direct.is_made_by(Strategy { s: 1, t: 1 }, true));
-        assert!(!direct.is_made_by(Strategy { s: 2, t: 2 }, true));
+        assert!(!direct.is_made_by(Strategy { s: 1, t: 1 }, Joins::Near));
+        assert!(!direct.is_made_by(Strategy { s: 2, t: 2 }, Joins::Near));
     }
 
     #[test]
     fn long_paths_keep_their_ends() {
         let long = PathClass::new(LampEnd::Surface, (0..200).map(|i| i == 199));
         assert!(long.last() && !long.first() && long.is_caustic() && long.edges() == 201);
-        assert!(long.is_made_by(Strategy { s: 201, t: 1 }, false));
+        assert!(long.is_made_by(Strategy { s: 201, t: 1 }, Joins::All));
+        assert!(!long.is_made_by(Strategy { s: 201, t: 1 }, Joins::Nothing));
     }
 }

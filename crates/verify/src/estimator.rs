@@ -1,5 +1,6 @@
 //! The ways to render that are compared, and what each can reach.
 
+use caustica_scene::camera::Joins;
 use caustica_scene::description::{Integrator, Technique};
 use caustica_transport::{Heuristic, Settings, Strategy, StrategySet};
 
@@ -76,9 +77,9 @@ impl Estimator {
         self.strategies.contains(strategy).then_some(strategy)
     }
 
-    /// Whether it finds paths of that class.
-    pub fn reaches(&self, class: &PathClass, parallel_camera: bool) -> bool {
-        let made = |s| self.has(s, class.edges()).is_some_and(|s| class.is_made_by(s, parallel_camera));
+    /// Whether it finds paths of that class, seen by a camera of which so much can be joined.
+    pub fn reaches(&self, class: &PathClass, camera: Joins) -> bool {
+        let made = |s| self.has(s, class.edges()).is_some_and(|s| class.is_made_by(s, camera));
         (0..=class.edges()).any(made)
     }
 
@@ -113,7 +114,7 @@ mod tests {
         let all = Estimator::all(&Settings::default());
         let who = |lamp, text: &str| -> Vec<&str> {
             let class = PathClass::new(lamp, text.chars().map(|c| c == 'D'));
-            all.iter().filter(|e| e.reaches(&class, false)).map(|e| e.name.as_str()).skip(2).collect()
+            all.iter().filter(|e| e.reaches(&class, Joins::All)).map(|e| e.name.as_str()).skip(2).collect()
         };
         let (area, point) = (LampEnd::Surface, LampEnd::Dirac);
         assert_eq!(who(area, "SDS"), ["bdpt, s=0", "bdpt, t>=2", "path", "path_ems", "naive"]);

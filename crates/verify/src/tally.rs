@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use caustica_math::{Rgb, Vec2};
+use caustica_scene::camera::Joins;
 use caustica_transport::{Contribution, Kernel, Sink};
 
 use crate::class::PathClass;
@@ -211,8 +212,8 @@ pub struct Probe<'k, 's> {
     pub render: PictureSink<'k, 's>,
     pub learned: Learned,
     pub estimators: &'k [Estimator],
-    /// Whether the camera projects in parallel.
-    pub parallel: bool,
+    /// What the camera can be joined with.
+    pub camera: Joins,
     /// Parts of a splat by block, used again.
     pub parts: Vec<(usize, f64)>,
 }
@@ -222,7 +223,7 @@ const RAREST: f64 = 1e12;
 
 impl Probe<'_, '_> {
     fn reach(&self, class: &PathClass) -> u32 {
-        let bit = |(i, e): (usize, &Estimator)| u32::from(e.reaches(class, self.parallel)) << i;
+        let bit = |(i, e): (usize, &Estimator)| u32::from(e.reaches(class, self.camera)) << i;
         self.estimators.iter().enumerate().map(bit).sum()
     }
 

@@ -4,6 +4,7 @@ use caustica_math::stats::sidak;
 use caustica_math::stream::mix64;
 use caustica_render::{Control, RenderError, available_threads};
 use caustica_scene::Scene;
+use caustica_scene::camera::Joins;
 use caustica_scene::description::{FilmSettings, Integrator};
 use caustica_transport::{Kernel, Scratch, Settings, StrategySet};
 
@@ -127,8 +128,8 @@ impl Run<'_> {
         mix64(self.options.settings.seed ^ mix64((estimator as u64) << 32 | replicate as u64))
     }
 
-    fn is_parallel(&self) -> bool {
-        self.scene.camera.is_parallel()
+    fn camera(&self) -> Joins {
+        self.scene.camera.joins()
     }
 
     /// Runs the replicates on all threads.
@@ -171,8 +172,7 @@ impl Run<'_> {
                 pixel: [0; 2],
             };
             let learned = Learned::new(&self.grid, estimators.len());
-            let mut probe =
-                Probe { render, learned, estimators, parallel: self.is_parallel(), parts: Vec::new() };
+            let mut probe = Probe { render, learned, estimators, camera: self.camera(), parts: Vec::new() };
             for pass in 0..passes {
                 for pixel in self.grid.each_pixel() {
                     probe.render.pixel = pixel;
@@ -272,12 +272,12 @@ impl Run<'_> {
         let level = sidak(self.options.significance, tests);
         tested.iter_mut().for_each(|t| t.judge(&self.grid, level));
         let total: f64 = learned.classes.values().map(|t| t.light).sum();
-        let parallel = self.is_parallel();
+        let camera = self.camera();
         let shares = learned.classes.iter().map(|(class, tally)| ClassShare {
             class: *class,
             share: if total > 0.0 { tally.light / total } else { 0.0 },
             count: tally.count,
-            reached: tested.iter().map(|t| t.estimator.reaches(class, parallel)).collect(),
+            reached: tested.iter().map(|t| t.estimator.reaches(class, camera)).collect(),
         });
         let passes = REFERENCE * self.passes * self.replicates;
         Outcome {

@@ -30,6 +30,19 @@ fn info_tells_what_is_approximated() {
 }
 
 #[test]
+fn cameras_of_one_ray_and_light_paths() {
+    let bench = Bench::new();
+    let meter = "<sensor type='radiancemeter'><film type='hdrfilm'><integer name='width' value='1'/>\
+        <integer name='height' value='1'/><rfilter type='box'/></film></sensor>";
+    let rest = "<shape type='sphere'><point name='center' z='5'/></shape><emitter type='constant'/>";
+    bench.write("scene.xml", format!("<scene version='3.0.0'>{meter}{rest}</scene>"));
+    let ran = bench.run(&["render", "scene.xml", "--spp", "1", "--integrator", "light", "-o", "a.exr"]).ok();
+    assert!(ran.err.contains("no light path meets a camera of one ray"), "{}", ran.err);
+    let (picture, _) = bench.render("b", &["--spp", "4", "--integrator", "bdpt"]);
+    assert!(picture.width == 1 && picture.eye[0].0[0] > 0.1, "{:?}", picture.eye);
+}
+
+#[test]
 fn variables_that_nobody_asks_for_are_refused() {
     let bench = Bench::new();
     bench.write("scene.xml", SCENE);

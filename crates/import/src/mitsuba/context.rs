@@ -27,6 +27,10 @@ pub(super) struct Context<'c> {
     pub(super) max_depth: Option<u32>,
     /// The bounces before roulette, if the scene says so.
     pub(super) roulette_start: Option<u32>,
+    /// Whether the camera does not see lamps.
+    pub(super) hides_lamps: bool,
+    /// Sensors in shapes: the place of each in the tree, and of its shape in the description.
+    pub(super) meters: Vec<(usize, u32)>,
     meshes: BTreeMap<PathBuf, Mesh>,
     images: BTreeMap<(PathBuf, Codes), ImageId>,
     /// The materials of objects of the tree.
@@ -47,6 +51,8 @@ impl<'c> Context<'c> {
             description: Description { samples: 4, ..Description::default() },
             max_depth: None,
             roulette_start: None,
+            hides_lamps: false,
+            meters: Vec::new(),
             meshes: BTreeMap::new(),
             images: BTreeMap::new(),
             materials: BTreeMap::new(),

@@ -38,16 +38,27 @@ const SHOWN_PATH: &[&str] = &[
     "multichannel",
 ];
 
+/// What wraps another integrator and shows more than its picture.
+const WRAPPERS: &[&str] = &["moment", "aov", "stokes", "adaptive", "irrcache", "multichannel"];
+
 pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     let mut fields = Fields::new(cx.tree, index);
     let plugin = fields.plugin();
-    if let "moment" | "aov" | "stokes" | "adaptive" | "irrcache" | "multichannel" = plugin
-        && let Some((_, inner)) = fields.children(Class::Integrator).first()
-    {
-        fields.warn(format!("the {} is not supported; what is inside of it is rendered", fields.title()));
-        fields.ignore(&["aovs", "img"]);
-        fields.finish(cx);
-        return read(*inner, cx);
+    if WRAPPERS.contains(&plugin) {
+        let inner = fields.children(Class::Integrator);
+        let channels = if plugin == "aov" { fields.string("aovs")?.map(|(text, _)| text) } else { None };
+        if let Some((_, first)) = inner.first() {
+            for (other, _) in &inner[1..] {
+                fields.warn_at("only the first of the integrators is rendered", &other.origin);
+            }
+            fields.warn(format!("the {} is not supported; what is inside of it is rendered", fields.title()));
+            fields.ignore(&["img"]);
+            fields.finish(cx);
+            return read(*first, cx);
+        }
+        if plugin == "aov" {
+            return channel(fields, channels.unwrap_or_default(), cx);
+        }
     }
     cx.description.integrator = match plugin {
         "path" => USUAL,
@@ -65,9 +76,7 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
         _ => return Err(fields.unknown_plugin(INTEGRATORS)),
     };
     depths(&mut fields, cx)?;
-    if fields.boolean("hide_emitters", false)? {
-        fields.warn("`hide_emitters` is not supported yet; lamps are seen");
-    }
+    cx.hides_lamps = fields.boolean("hide_emitters", false)?;
     // How much is done at a time, by which strategies of their own.
     fields.ignore(&[
         "samples_per_pass",
@@ -80,6 +89,26 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     if plugin != "direct" && SHOWN_PATH.contains(&plugin) {
         fields.take_rest();
     }
+    fields.finish(cx);
+    Ok(())
+}
+
+/// `aov` alone: the first of its channels that there is an integrator for.
+fn channel(mut fields: Fields, channels: &str, cx: &mut Context) -> Result<(), Diagnostic> {
+    let kinds = channels.split(',').filter_map(|c| Some(c.split_once(':')?.1.trim()));
+    let known = |kind: &str| match kind {
+        "depth" => Some(Integrator::Depth),
+        "sh_normal" => Some(Integrator::Normals),
+        _ => None,
+    };
+    let Some((kind, integrator)) = kinds.into_iter().find_map(|k| Some((k, known(k)?))) else {
+        let error =
+            fields.error("the integrator `aov` has no integrator inside and no channel that can be shown");
+        return Err(error.hint("`depth` and `sh_normal` can be shown, or what an integrator inside renders"));
+    };
+    let what = if kind == "depth" { "`depth`" } else { "the magnitude of `sh_normal`" };
+    fields.warn(format!("of the channels of `aov`, {what} alone is shown"));
+    cx.description.integrator = integrator;
     fields.finish(cx);
     Ok(())
 }

@@ -1,66 +1,162 @@
-//! `<sensor>`, `<film>`, `<rfilter>` and `<sampler>`.
+//! `<sensor>`.
 //!
 //! Mitsuba's cameras look along +z with +x to the left, as ours do.
 
 use caustica_math::elementary::{atan2, tan};
+use caustica_math::{Transform, Vec3};
 use caustica_scene::Diagnostic;
-use caustica_scene::description::{Camera, CameraKind, Crop, FilmSettings, Filter};
+use caustica_scene::description::{Camera, CameraKind, FilmSettings};
 
 use super::class::Class;
 use super::context::Context;
 use super::fields::Fields;
+use super::film;
+use super::transform::look;
 use super::tree::error;
-use crate::nori::camera::{self, LONGEST_SIDE};
 use crate::nori::range::Bounds;
 
-const SENSORS: &[&str] = &["perspective", "thinlens", "orthographic"];
-const FILMS: &[&str] = &["hdrfilm", "ldrfilm", "specfilm", "tiledhdrfilm", "mfilm"];
-const FILTERS: &[&str] = &["box", "tent", "gaussian", "mitchell", "catmullrom", "lanczos"];
-const SAMPLERS: &[&str] =
-    &["independent", "stratified", "multijitter", "orthogonal", "ldsampler", "halton", "hammersley", "sobol"];
+const SENSORS: &[&str] =
+    &["perspective", "thinlens", "orthographic", "radiancemeter", "irradiancemeter", "spherical"];
 
-/// The widest filter: every sample is added to all pixels that it covers.
-const WIDEST_FILTER: f64 = 32.0;
+/// What looks almost like one of ours.
+const SHOWN: &[(&str, &str)] = &[("perspective_rdist", "perspective"), ("telecentric", "orthographic")];
 
-pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
+/// What measures other things than pictures are made of.
+const UNSUPPORTED: &[&str] =
+    &["distant", "hdistant", "batch", "fluencemeter", "mradiancemeter", "microphone"];
+
+/// Whether there is a camera for the sensor.
+pub(super) fn is_supported(plugin: &str) -> bool {
+    !UNSUPPORTED.contains(&plugin)
+}
+
+/// Reads a sensor; `shape` is the one that it is attached to, by its place in the description.
+pub(super) fn read(index: usize, shape: Option<u32>, cx: &mut Context) -> Result<(), Diagnostic> {
     let mut fields = Fields::new(cx.tree, index);
-    if !SENSORS.contains(&fields.plugin()) {
-        return Err(fields.unknown_plugin(SENSORS));
-    }
-    match fields.child(Class::Film)? {
-        Some(film) => cx.description.film = read_film(film, cx)?,
-        None => cx.description.film = usual_film(),
-    }
+    let kind = plugin(&mut fields)?;
+    let given = fields.child(Class::Film)?;
+    cx.description.film = match given {
+        Some(film) => film::read(film, cx)?,
+        None => film::usual(),
+    };
     if let Some(sampler) = fields.child(Class::Sampler)? {
-        read_sampler(sampler, cx)?;
+        film::read_sampler(sampler, cx)?;
     }
-    let film = &cx.description.film;
-    let kind = kind(&mut fields, film.width as f32 / film.height as f32)?;
-    let near = fields.float("near_clip", 1e-2, Bounds::NotNegative)?;
-    let far = fields.float("far_clip", 1e4, Bounds::PositiveOrInfinite)?;
-    if near >= far {
-        return Err(fields.error(format!("`near_clip` ({near}) must be less than `far_clip` ({far})")));
+    let film = &mut cx.description.film;
+    let meters = matches!(kind, "radiancemeter" | "irradiancemeter");
+    if meters {
+        meter_film(&mut fields, film, given.is_some());
     }
-    let to_world = fields.transform("to_world")?;
-    let origin = Some(fields.object.origin.clone());
-    cx.description.camera = Camera { kind, to_world, near, far, origin };
-    for name in ["principal_point_offset_x", "principal_point_offset_y"] {
-        if fields.float(name, 0.0, Bounds::Finite)? != 0.0 {
-            fields.warn(format!("`{name}` is not supported yet; the principal point is the centre"));
+    let aspect = film.width as f32 / film.height as f32;
+    let kind = match (kind, shape) {
+        ("orthographic", _) => CameraKind::Orthographic,
+        ("spherical", _) => CameraKind::Environment,
+        ("radiancemeter", _) => CameraKind::RadianceMeter,
+        ("irradiancemeter", Some(shape)) => CameraKind::IrradianceMeter { shape },
+        ("irradiancemeter", None) => {
+            let error = fields.error("the sensor `irradiancemeter` must stand inside of a shape");
+            return Err(error.hint("move it into the `<shape>` whose irradiance is wanted"));
         }
-    }
+        (kind, _) => lens(&mut fields, kind == "thinlens", aspect)?,
+    };
+    let camera = Camera { kind, origin: Some(fields.object.origin.clone()), ..Camera::default() };
+    let camera = if meters { meter(&mut fields, camera)? } else { picture(&mut fields, camera)? };
+    cx.description.camera = Camera { hides_lamps: cx.hides_lamps, ..camera };
     fields.ignore(&["shutter_open", "shutter_close"]);
     fields.unsupported(&["srf"]);
     fields.finish(cx);
     Ok(())
 }
 
-fn kind(fields: &mut Fields, aspect: f32) -> Result<CameraKind, Diagnostic> {
-    if fields.plugin() == "orthographic" {
-        return Ok(CameraKind::Orthographic);
+/// The plugin whose camera is used.
+fn plugin<'t>(fields: &mut Fields<'t>) -> Result<&'t str, Diagnostic> {
+    let plugin = fields.plugin();
+    if UNSUPPORTED.contains(&plugin) {
+        let message = format!("the {} is not supported", fields.title());
+        let hint = format!("use one of {}", SENSORS[..5].join(", "));
+        return Err(error(message, &fields.object.plugin_origin).hint(hint));
     }
+    if let Some((_, shown)) = SHOWN.iter().find(|(name, _)| *name == plugin) {
+        fields.warn(format!("the {} is not supported; `{shown}` is used instead", fields.title()));
+        fields.unsupported(&["kc"]);
+        if *shown == "orthographic" {
+            fields.unsupported(&["aperture_radius", "focus_distance"]);
+        }
+        return Ok(shown);
+    }
+    if SENSORS.contains(&plugin) { Ok(plugin) } else { Err(fields.unknown_plugin(SENSORS)) }
+}
+
+/// A meter shows one number; a radiance meter's film must have one pixel, in Mitsuba.
+fn meter_film(fields: &mut Fields<'_>, film: &mut FilmSettings, given: bool) {
+    let many = u64::from(film.width) * u64::from(film.height);
+    let most = if fields.plugin() == "radiancemeter" { 1 } else { 4096 };
+    if !given || many > most {
+        if given {
+            fields.warn(format!("the {} shows one number: its film has one pixel here", fields.title()));
+        }
+        (film.width, film.height, film.crop) = (1, 1, None);
+    }
+    if !given {
+        film.filter = film::PIXEL;
+    }
+}
+
+/// Place, clip planes and principal point of a camera that shows pictures.
+fn picture(fields: &mut Fields<'_>, camera: Camera) -> Result<Camera, Diagnostic> {
+    let near = fields.float("near_clip", 1e-2, Bounds::NotNegative)?;
+    let far = fields.float("far_clip", 1e4, Bounds::PositiveOrInfinite)?;
+    if near >= far {
+        return Err(fields.error(format!("`near_clip` ({near}) must be less than `far_clip` ({far})")));
+    }
+    let to_world = fields.transform("to_world")?;
+    let mut principal_point = [0.5; 2];
+    if let CameraKind::Perspective { .. } | CameraKind::ThinLens { .. } = camera.kind {
+        let names = ["principal_point_offset_x", "principal_point_offset_y"];
+        for (place, name) in principal_point.iter_mut().zip(names) {
+            // The film is moved, so that what is ahead is seen on the other side.
+            *place -= fields.float(name, 0.0, Bounds::Finite)?;
+        }
+    }
+    Ok(Camera { to_world, near, far, principal_point, ..camera })
+}
+
+/// Place of a meter, which has no clip planes. One in a shape stands where the shape does.
+fn meter(fields: &mut Fields<'_>, camera: Camera) -> Result<Camera, Diagnostic> {
+    let mut to_world = Transform::IDENTITY;
+    if camera.kind == CameraKind::RadianceMeter {
+        let placed = fields.transform_if_any("to_world")?;
+        let ray = (fields.point("origin")?, fields.direction("direction")?);
+        to_world = match (placed, ray) {
+            (Some(placed), _) => placed,
+            (None, (None, None)) => Transform::IDENTITY,
+            (None, (Some(origin), Some(direction))) => along(origin, direction)
+                .ok_or_else(|| fields.error("`origin` and `direction` are too large to be a ray"))?,
+            (None, (Some(_), None)) => return Err(fields.missing("direction", "the vector")),
+            (None, (None, Some(_))) => return Err(fields.missing("origin", "the point")),
+        };
+    } else if fields.transform_if_any("to_world")?.is_some() {
+        return Err(
+            fields.error("the sensor `irradiancemeter` has the place of its shape, and no `to_world`")
+        );
+    }
+    fields.ignore(&["near_clip", "far_clip"]);
+    Ok(Camera { to_world, near: 0.0, far: f32::INFINITY, ..camera })
+}
+
+/// A frame at `origin` that looks in `direction`.
+fn along(origin: [f32; 3], direction: [f32; 3]) -> Option<Transform> {
+    let forward = Vec3::from(direction).try_normalized()?.to_array().map(f64::from);
+    let origin = origin.map(f64::from);
+    // Far enough for the target to differ from the origin.
+    let distance = origin.iter().fold(1.0_f64, |most, c| most.max(c.abs()));
+    let placed = look(origin, [0, 1, 2].map(|i| origin[i] + distance * forward[i]), None);
+    placed.is_invertible().then_some(placed)
+}
+
+fn lens(fields: &mut Fields<'_>, thin: bool, aspect: f32) -> Result<CameraKind, Diagnostic> {
     let fov = field_of_view(fields, aspect)?;
-    if fields.plugin() == "perspective" {
+    if !thin {
         fields.ignore(&["focus_distance"]);
         return Ok(CameraKind::Perspective { fov });
     }
@@ -104,103 +200,4 @@ fn field_of_view(fields: &mut Fields, aspect: f32) -> Result<f32, Diagnostic> {
         _ => return Ok(given.unwrap_or_else(|| 2.0 * atan2(half, 1.0).to_degrees())),
     };
     Ok(2.0 * atan2(across, 1.0).to_degrees())
-}
-
-fn usual_film() -> FilmSettings {
-    FilmSettings {
-        width: 768,
-        height: 576,
-        crop: None,
-        filter: Filter::Gaussian { radius: 2.0, stddev: 0.5 },
-    }
-}
-
-fn read_film(index: usize, cx: &mut Context) -> Result<FilmSettings, Diagnostic> {
-    let mut fields = Fields::new(cx.tree, index);
-    if !FILMS.contains(&fields.plugin()) {
-        return Err(fields.unknown_plugin(FILMS));
-    }
-    let mut film = usual_film();
-    let side = |fields: &mut Fields, name, default: u32| {
-        Ok(fields.integer(name, 1..=LONGEST_SIDE)?.map_or(default, |v| v as u32))
-    };
-    film.width = side(&mut fields, "width", film.width)?;
-    film.height = side(&mut fields, "height", film.height)?;
-    film.crop = crop(&mut fields, &film)?;
-    if let Some(filter) = fields.child(Class::Filter)? {
-        film.filter = read_filter(filter, cx)?;
-    }
-    camera::check_film(&film).map_err(|message| fields.error(message))?;
-    // How files are written is said by the command line.
-    fields.ignore(&[
-        "file_format",
-        "pixel_format",
-        "component_format",
-        "banner",
-        "high_quality_edges",
-        "sample_border",
-        "compensate",
-        "attach_log",
-        "channel_names",
-        "variable",
-        "digits",
-        "tonemap_method",
-    ]);
-    fields.unsupported(&["gamma", "exposure", "key", "burn"]);
-    fields.finish(cx);
-    Ok(film)
-}
-
-fn crop(fields: &mut Fields, film: &FilmSettings) -> Result<Option<Crop>, Diagnostic> {
-    let x = fields.integer("crop_offset_x", 0..=LONGEST_SIDE)?;
-    let y = fields.integer("crop_offset_y", 0..=LONGEST_SIDE)?;
-    let width = fields.integer("crop_width", 1..=LONGEST_SIDE)?;
-    let height = fields.integer("crop_height", 1..=LONGEST_SIDE)?;
-    Ok(camera::crop(film, [x, y, width, height]))
-}
-
-fn read_filter(index: usize, cx: &mut Context) -> Result<Filter, Diagnostic> {
-    let mut fields = Fields::new(cx.tree, index);
-    let radius =
-        |fields: &mut Fields, default| fields.float("radius", default, Bounds::UpTo(0.0, WIDEST_FILTER));
-    let filter = match fields.plugin() {
-        "box" => Filter::Box { radius: radius(&mut fields, 0.5)? },
-        "tent" => Filter::Tent { radius: radius(&mut fields, 1.0)? },
-        "gaussian" => {
-            let stddev = fields.float("stddev", 0.5, Bounds::UpTo(0.0, 0.25 * WIDEST_FILTER))?;
-            Filter::Gaussian { radius: 4.0 * stddev, stddev }
-        }
-        "mitchell" => {
-            let parameter = |fields: &mut Fields, names: [&'static str; 2]| {
-                let upper = fields.float_if_any(names[0], Bounds::Finite)?;
-                let lower = fields.float_if_any(names[1], Bounds::Finite)?;
-                Ok::<f32, Diagnostic>(upper.or(lower).unwrap_or(1.0 / 3.0))
-            };
-            let (b, c) = (parameter(&mut fields, ["A", "a"])?, parameter(&mut fields, ["B", "b"])?);
-            Filter::Mitchell { radius: radius(&mut fields, 2.0)?, b, c }
-        }
-        "catmullrom" => Filter::Mitchell { radius: 2.0, b: 0.0, c: 0.5 },
-        "lanczos" => {
-            fields.ignore(&["lobes"]);
-            fields.warn("the filter `lanczos` is not supported yet; `catmullrom` is used instead");
-            Filter::Mitchell { radius: 2.0, b: 0.0, c: 0.5 }
-        }
-        _ => return Err(fields.unknown_plugin(FILTERS)),
-    };
-    fields.finish(cx);
-    Ok(filter)
-}
-
-/// All of them give the same picture, with more or less noise; ours has a sampler of its own.
-fn read_sampler(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
-    let mut fields = Fields::new(cx.tree, index);
-    if !SAMPLERS.contains(&fields.plugin()) {
-        return Err(fields.unknown_plugin(SAMPLERS));
-    }
-    if let Some(samples) = fields.integer("sample_count", 1..=i64::from(u32::MAX))? {
-        cx.description.samples = samples as u32;
-    }
-    fields.ignore(&["seed", "jitter", "strength", "scramble", "dimension"]);
-    fields.finish(cx);
-    Ok(())
 }

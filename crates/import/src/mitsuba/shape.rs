@@ -62,6 +62,8 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
         }
     }
     fields.unsupported(&["interior", "exterior"]);
+    let place = cx.description.shapes.len() as u32;
+    cx.meters.extend(fields.children(Class::Sensor).into_iter().map(|(_, sensor)| (sensor, place)));
     let name = fields.object.id.clone().unwrap_or(surface.name);
     let origin = Some(fields.object.origin.clone());
     fields.finish(cx);

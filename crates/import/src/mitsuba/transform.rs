@@ -85,15 +85,19 @@ fn look_at(file: &File, node: Node, variables: &mut Variables) -> Result<Transfo
         Ok([v[0], v[1], v[2]])
     };
     let (origin, target) = (triple("origin")?, triple("target")?);
-    let up = if node.has_attribute("up") {
-        triple("up")?
-    } else {
-        // Any direction will do; the axis farthest from the line of sight is never parallel to it.
+    let up = node.has_attribute("up").then(|| triple("up")).transpose()?;
+    Ok(look(origin, target, up))
+}
+
+/// From `origin` to `target`, any way up if none is given.
+pub(super) fn look(origin: [f64; 3], target: [f64; 3], up: Option<[f64; 3]>) -> Transform {
+    // Any direction will do; the axis farthest from the line of sight is never parallel to it.
+    let across = || {
         let along = [0, 1, 2].map(|i| (target[i] - origin[i]).abs());
         let least = (0..3).min_by(|a, b| along[*a].total_cmp(&along[*b])).unwrap_or(0);
         [0, 1, 2].map(|i| f64::from(i == least))
     };
-    Ok(Transform::look_at(origin, target, up))
+    Transform::look_at(origin, target, up.unwrap_or_else(across))
 }
 
 #[cfg(test)]

@@ -54,6 +54,7 @@ pub(super) fn object(object: &mut Object, version: Version) {
     }
     let renamed: &[(&str, &str)] = match (object.class, object.plugin.as_str()) {
         (Class::Bsdf, "diffuse") => &[("diffuse_reflectance", "reflectance")],
+        (Class::Integrator, "direct") => &[("luminaire_samples", "emitter_samples")],
         (Class::Emitter, "spot") => &[("cutoff", "cutoff_angle")],
         _ => &[],
     };

@@ -29,7 +29,8 @@ pub(super) fn read(object: &Object, cx: &mut Context) -> Result<(), Diagnostic> 
         return Err(fields.error(format!("`nearClip` ({near}) must be less than `farClip` ({far})")));
     }
     let to_world = fields.transform(&["toWorld"])?;
-    cx.description.camera = Camera { kind, to_world, near, far, origin: cx.origin(&object.range) };
+    cx.description.camera =
+        Camera { kind, to_world, near, far, origin: cx.origin(&object.range), ..Camera::default() };
     let mut film = FilmSettings::default();
     film_properties(&mut fields, &mut film, cx)?;
     if let Some(object) = fields.child(Class::Film)? {

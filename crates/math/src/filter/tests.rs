@@ -5,7 +5,9 @@ use crate::stream::{SampleStream, StreamId};
 const GAUSSIAN: Filter = Filter::Gaussian { radius: 2.0, stddev: 0.5 };
 const MITCHELL: Filter = Filter::Mitchell { radius: 2.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
 
-const ALL: [Filter; 8] = [
+const LANCZOS: Filter = Filter::Lanczos { lobes: 3 };
+
+const ALL: [Filter; 10] = [
     Filter::Box { radius: 0.5 },
     Filter::Box { radius: 1.3 },
     Filter::Tent { radius: 1.0 },
@@ -14,6 +16,8 @@ const ALL: [Filter; 8] = [
     Filter::Gaussian { radius: 3.0, stddev: 0.02 },
     MITCHELL,
     Filter::Mitchell { radius: 3.0, b: 0.0, c: 0.75 },
+    LANCZOS,
+    Filter::Lanczos { lobes: 1 },
 ];
 
 fn stream(seed: u64) -> SampleStream {
@@ -64,6 +68,9 @@ fn textbook_values() {
     let wide = Filter::Mitchell { radius: 4.0, b: 1.0 / 3.0, c: 1.0 / 3.0 };
     assert_eq!(wide.eval1d(2.0), MITCHELL.eval1d(1.0));
     assert_eq!(Filter::Tent { radius: 2.0 }.eval1d(-0.5), 0.75);
+    // sin(π/2)/(π/2)·sin(π/6)/(π/6) = 6/π².
+    assert!((LANCZOS.eval1d(0.5) - 0.607_927_1).abs() < 1e-6 && LANCZOS.eval1d(0.0) == 1.0);
+    assert!(LANCZOS.eval1d(1.0).abs() < 1e-7 && LANCZOS.eval1d(1.5) < -0.13 && LANCZOS.eval1d(2.5) > 0.02);
 }
 
 /// 400 cells in two dimensions against integrals of |filter|.
@@ -130,11 +137,13 @@ fn weights_have_one_magnitude_and_the_filters_sign() {
             // Within rounding of a zero of the filter either sign will do.
             assert!(density * w > 0.0 || density.abs() < 1e-3, "{filter:?} at {p:?}");
             negative += u32::from(w < 0.0);
-            if !matches!(filter, Filter::Mitchell { .. }) {
+            if !filter.has_lobes() {
                 assert_eq!(w, 1.0);
             }
         }
-        assert_eq!(negative > 0, matches!(filter, Filter::Mitchell { .. }), "{filter:?}");
+        // One lobe of Lanczos' is the middle one.
+        let lobes = filter.has_lobes() && filter != Filter::Lanczos { lobes: 1 };
+        assert_eq!(negative > 0, lobes, "{filter:?}");
     }
 }
 
@@ -183,6 +192,7 @@ fn impossible_filters_become_the_pixel() {
         Filter::Gaussian { radius: 2.0, stddev: 0.0 },
         Filter::Gaussian { radius: f32::INFINITY, stddev: 1.0 },
         Filter::Mitchell { radius: -1.0, b: 0.3, c: 0.3 },
+        Filter::Lanczos { lobes: 0 },
     ] {
         assert_eq!(PixelFilter::new(&filter), pixel, "{filter:?}");
     }

@@ -18,6 +18,12 @@ pub struct Camera {
     pub near: f32,
     /// Surfaces farther than this along +z are not seen.
     pub far: f32,
+    /// Where on the picture +z is seen, in shares of its width and height from the upper left corner: the middle
+    /// unless the lens is shifted. Within a thousand. (Without effect on [`CameraKind::Environment`] and meters.)
+    pub principal_point: [f32; 2],
+    /// Whether lamps are invisible to it: rays from the camera pass through surfaces that are lamps, and see no
+    /// environment. What lamps light, and their reflections, are seen all the same.
+    pub hides_lamps: bool,
     /// Where it stands in the file.
     pub origin: Option<Origin>,
 }
@@ -29,6 +35,8 @@ impl Default for Camera {
             to_world: Transform::IDENTITY,
             near: 1e-4,
             far: 1e4,
+            principal_point: [0.5; 2],
+            hides_lamps: false,
             origin: None,
         }
     }
@@ -58,6 +66,22 @@ pub enum CameraKind {
     /// All directions around the camera as an equirectangular picture: +y of the camera frame is up,
     /// the picture's centre is +z.
     Environment,
+    /// One ray, along +z: every pixel shows its radiance. Light paths cannot be joined with it.
+    RadianceMeter,
+    /// The irradiance (in W·m⁻² where radiance is in W·m⁻²·sr⁻¹) of a surface of the scene, its mean over the
+    /// area: every pixel shows it. The pixel filter has no effect, nor have transform and clip planes. Up to 4096
+    /// pixels.
+    IrradianceMeter {
+        /// Index of the shape, on the side of whose normals light is measured.
+        shape: u32,
+    },
+}
+
+impl CameraKind {
+    /// Whether all pixels show one number.
+    pub fn is_meter(&self) -> bool {
+        matches!(self, Self::RadianceMeter | Self::IrradianceMeter { .. })
+    }
 }
 
 /// The size, crop and filter of a film.

@@ -192,7 +192,7 @@ impl Kernel<'_> {
             unweighted: joined.value,
             weight,
             film: joined.film,
-            filter_weight: if t == 1 { 1.0 } else { sample.filter_weight },
+            filter_weight: if t == 1 { self.scene.camera.response() } else { sample.filter_weight },
             path: PathView {
                 lamp: joined.lamp,
                 light: &sample.light.vertices[..s.saturating_sub(1)],

@@ -70,7 +70,7 @@ impl Kernel<'_> {
         let lights = self.scene.lights(self.wavelengths);
         let lamp = emission.point;
         let light = lights.lights.get(lamp.light);
-        if light.is_delta() {
+        if light.is_delta() || self.scene.camera.hides_lamps() {
             return None;
         }
         let link = if light.is_infinite() {
@@ -104,7 +104,7 @@ impl Kernel<'_> {
         let y = &sample.light.vertices[i];
         let (link, at_light) = self.camera_link(y, lens)?;
         let value = y.throughput * at_light.value * (link.pdf.0 * link.falloff / self.light_paths);
-        if value.is_black() || !self.scene.visible(y.point.off_surface(link.direction), link.end) {
+        if value.is_black() || !self.is_seen_from_camera(&y.point, &link) {
             return None;
         }
         let from_camera = link.pdf.0 * link.falloff * y.cos(link.direction);

@@ -99,7 +99,7 @@ pub fn explain(
 /// The patterns of what was found, the brightest first.
 fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
     let estimators = Estimator::all(&question.settings);
-    let parallel = scene.camera.is_parallel();
+    let camera = scene.camera.joins();
     let (light, squares) = (survey.light(), survey.squares());
     let mean = light / survey.pixel_samples();
     let shares = by_pattern(survey.classes.iter().map(|(class, c)| (class, c.tally.light)));
@@ -110,7 +110,7 @@ fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
             .filter(|(c, _)| c.pattern() == pattern && crate::outcome::lamp_name(c.lamp()) == lamp)
             .collect();
         let own: f64 = classes.iter().map(|(_, c): &(_, &Carried)| c.tally.squares).sum();
-        let reached = |e: &Estimator| classes.iter().all(|(c, _)| e.reaches(c, parallel));
+        let reached = |e: &Estimator| classes.iter().all(|(c, _)| e.reaches(c, camera));
         let misses = |name: &str| estimators.iter().find(|e| e.name == name).is_some_and(|e| !reached(e));
         let sets = [
             ("s=0", "bdpt, s=0"),
@@ -119,7 +119,7 @@ fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
             ("inner", "bdpt, s>=2&t>=2"),
         ];
         let makes = |(_, name): &(&str, &str)| {
-            let makes = |e: &Estimator| classes.iter().any(|(c, _)| e.reaches(c, parallel));
+            let makes = |e: &Estimator| classes.iter().any(|(c, _)| e.reaches(c, camera));
             estimators.iter().find(|e| e.name == *name).is_some_and(makes)
         };
         Row {
