@@ -73,6 +73,21 @@ impl Arguments {
             Command::Develop(_) => Voice { json: false, quiet: false },
         }
     }
+
+    /// How many threads may work, if that is said.
+    pub fn threads(&self) -> Option<usize> {
+        let threads = match &self.command {
+            Command::Render(a) => a.source.threads,
+            Command::Compare(a) => a.source.threads,
+            Command::Pyramid(a) => a.source.threads,
+            Command::Video(a) => a.clip().source.threads,
+            Command::Verify(a) => a.source.threads,
+            Command::Explain(a) => a.source.threads,
+            Command::Test(a) => a.threads,
+            Command::Info(_) | Command::Merge(_) | Command::Develop(_) => None,
+        };
+        threads.map(usize::from)
+    }
 }
 
 /// What is rendered, and on what.
@@ -137,6 +152,9 @@ pub struct Render {
     /// OUTPUT.film, only that: a film that can be merged and developed
     #[arg(short, long)]
     pub output: Option<PathBuf>,
+    /// Replace a film also if its samples are lost by that
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub length: Length,
     /// Render only these samples of each pixel, of which the second number is not one: 1000..2000 is the second
@@ -186,6 +204,9 @@ pub struct Merge {
     /// The film of all their samples
     #[arg(short, long, value_name = "FILM")]
     pub output: PathBuf,
+    /// Replace a film also if its samples are lost by that
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub voice: Voice,
 }
