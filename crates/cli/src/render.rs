@@ -45,7 +45,8 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let of = provenance(&args.source.name(), &hash, &settings);
     let (checkpoint, record) = Checkpoint::open(&args.checkpoint)?.unzip();
     let options = options(args, settings, opened.samples);
-    let wanted = u64::from(options.first_sample)..u64::from(options.first_sample) + u64::from(options.samples);
+    let wanted =
+        u64::from(options.first_sample)..u64::from(options.first_sample) + u64::from(options.samples);
     let session = checkpoint::session(&scene, options, (record.flatten(), &of))?;
     if let (Outputs::Film(path), false) = (&outputs, args.force) {
         let facts = FilmFacts { samples: wanted.into(), ..session.facts(&of, 0.0) };

@@ -293,7 +293,8 @@ impl Film {
     /// Adds all that went into `other`, a film of the same layout.
     pub fn merge(&self, other: &Film) -> Result<(), FilmError> {
         self.check_same_layout(other)?;
-        for (i, (ours, theirs)) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()).enumerate() {
+        for (i, (ours, theirs)) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()).enumerate()
+        {
             self.turns.add((i as u64, ours), theirs.load(Relaxed));
         }
         self.turns.merge(&other.turns);

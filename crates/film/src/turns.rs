@@ -70,7 +70,8 @@ impl Turns {
     /// What that cannot have written.
     pub fn restore(&mut self, all: Vec<(u64, i64)>, sums: u64) -> Result<(), FilmError> {
         let ordered = all.windows(2).all(|pair| pair[0].0 < pair[1].0);
-        let sound = |(number, turns): &(u64, i64)| *number < sums && (1..MOST).contains(&turns.unsigned_abs());
+        let sound =
+            |(number, turns): &(u64, i64)| *number < sums && (1..MOST).contains(&turns.unsigned_abs());
         if !ordered || !all.iter().all(sound) {
             return Err(FilmError::Layout("the film file's largest sums make no sense".to_owned()));
         }

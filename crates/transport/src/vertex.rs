@@ -49,6 +49,13 @@ pub struct Scatter {
     pub reverse: SolidAnglePdf,
 }
 
+impl Scatter {
+    /// With its densities mixed up: a fault that can be planted.
+    pub(crate) fn swapped(self) -> Self {
+        Self { forward: self.reverse, reverse: self.forward, ..self }
+    }
+}
+
 impl Vertex {
     /// The vertex where a ray of direction `-prev` arrives. If it arrives on a side of the shading normal that is
     /// not that of the geometric one, nothing is scattered, whichever walk asks; but a lamp still shines.
@@ -91,13 +98,6 @@ impl Vertex {
         let scatter = match walk {
             Walk::FromCamera => {
                 let e = self.bsdf.eval(local, self.local_prev);
-                if is_planted(Fault::SwappedDensities) {
-                    return (!e.value.is_black()).then_some(Scatter {
-                        value: e.value,
-                        forward: e.to_camera_pdf,
-                        reverse: e.to_light_pdf,
-                    });
-                }
                 Scatter { value: e.value, forward: e.to_light_pdf, reverse: e.to_camera_pdf }
             }
             Walk::FromLight => {
@@ -107,6 +107,7 @@ impl Vertex {
                 Scatter { value, forward: e.to_camera_pdf, reverse: e.to_light_pdf }
             }
         };
+        let scatter = if is_planted(Fault::SwappedDensities) { scatter.swapped() } else { scatter };
         (!scatter.value.is_black()).then_some(scatter)
     }
 
@@ -124,6 +125,7 @@ impl Vertex {
         }
         let value = match walk {
             Walk::FromCamera => s.value,
+            Walk::FromLight if is_planted(Fault::Adjoint) => s.value,
             Walk::FromLight => s.value * (cos.abs() / self.cos(self.prev)),
         };
         Some((next, Scatter { value, forward: s.pdf, reverse: s.reverse_pdf }, s.delta))

@@ -290,7 +290,8 @@ mod tests {
         }
         assert_eq!(hidden("DD").pattern(), "LS+(D|S)*S+E");
         // A pair of D in the middle can be joined, wherever it is.
-        let inner = |c: &PathClass| (2..c.len()).any(|s| c.is_made_by(Strategy { s, t: c.len() + 2 - s }, false));
+        let inner =
+            |c: &PathClass| (2..c.len()).any(|s| c.is_made_by(Strategy { s, t: c.len() + 2 - s }, false));
         assert!(inner(&hidden("DD")) && !inner(&hidden("")));
         // Up to 64 vertices, all is remembered.
         let text = format!("{}D{}", "S".repeat(40), "S".repeat(23));

@@ -23,7 +23,12 @@ impl Need {
     /// If there is not.
     pub fn check(self, limit: MemoryLimit) -> Result<(), VerifyError> {
         let Crop { width, height, .. } = self.window;
-        limit.check(self.bytes).map_err(|shortage| VerifyError::Memory { doing: self.doing, width, height, shortage })
+        limit.check(self.bytes).map_err(|shortage| VerifyError::Memory {
+            doing: self.doing,
+            width,
+            height,
+            shortage,
+        })
     }
 }
 
@@ -60,7 +65,8 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_told_with_the_figure() {
         let window = |side| Crop { x: 0, y: 0, width: side, height: side };
-        let needs = |side| [for_verifying(window(side), (11, 64), Some(2)), for_explaining(window(side), Some(2))];
+        let needs =
+            |side| [for_verifying(window(side), (11, 64), Some(2)), for_explaining(window(side), Some(2))];
         for need in needs(96) {
             need.check(MemoryLimit::Bytes(100_000_000)).unwrap();
         }

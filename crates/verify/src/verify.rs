@@ -56,7 +56,9 @@ pub enum VerifyError {
     #[error("stopped before there was anything to compare")]
     Stopped,
     /// The picture is too large for the machine.
-    #[error("to {doing} {width} × {height} pixels {shortage}: a smaller picture shows the same (`--resolution`)")]
+    #[error(
+        "to {doing} {width} × {height} pixels {shortage}: a smaller picture shows the same (`--resolution`)"
+    )]
     Memory {
         /// What was to be done.
         doing: &'static str,

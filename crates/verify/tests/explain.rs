@@ -345,7 +345,10 @@ fn what_is_said_of_a_dozen_scenes() {
         assert!(!told.is_empty() && answer.per_sample.is_finite(), "{name}");
         assert!(!pointlike || !told.contains("larger lamp"), "{name}: {told}");
         for r in answer.rows.iter().take(5) {
-            println!("{:<14} {:.3} {:.3} {:.2} {} {:?}", r.pattern, r.light, r.noise, r.per_sample, r.lamp, r.strategies);
+            println!(
+                "{:<14} {:.3} {:.3} {:.2} {} {:?}",
+                r.pattern, r.light, r.noise, r.per_sample, r.lamp, r.strategies
+            );
         }
     }
 }

@@ -267,7 +267,8 @@ fn films_are_not_replaced_if_samples_are_lost() {
     bench.run(&["merge", "b.film", "-o", "a.film"]).fails(4, &["holds the samples 1..7", "`--force`"]);
     bench.run(&["merge", "a.film", "b.film", "-o", "a.film"]).ok();
     bench.write("c.film", "hours of writing");
-    render(&bench, &["--spp", "1", "-o", "c.film"]).fails(4, &["`c.film` is there and is no film", "`--force`"]);
+    render(&bench, &["--spp", "1", "-o", "c.film"])
+        .fails(4, &["`c.film` is there and is no film", "`--force`"]);
     bench.run(&["merge", "b.film", "-o", "c.film"]).fails(4, &["is no film"]);
     bench.run(&["merge", "b.film", "-o", "c.film", "--force"]).ok();
 }

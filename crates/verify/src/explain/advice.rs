@@ -108,6 +108,9 @@ fn rounded(samples: f64) -> String {
 mod tests {
     #[test]
     fn numbers_of_samples_have_two_figures() {
-        assert_eq!([65.0, 123.0, 99_949.0, 1.26e9].map(super::rounded), ["65", "120", "100000", "1300000000"]);
+        assert_eq!(
+            [65.0, 123.0, 99_949.0, 1.26e9].map(super::rounded),
+            ["65", "120", "100000", "1300000000"]
+        );
     }
 }

@@ -237,7 +237,9 @@ mod tests {
         assert_eq!(all, [[5, 7], [6, 7], [7, 7], [5, 8], [6, 8], [7, 8]]);
         for (width, height) in [(96, 64), (1920, 1080), (65536, 1), (1, 65536), (65536, 4096)] {
             let count = some_pixels(window(width, height), MOST_PIXELS).count() as u64;
-            assert!(count <= MOST_PIXELS && count * 4 >= (u64::from(width) * u64::from(height)).min(MOST_PIXELS));
+            assert!(
+                count <= MOST_PIXELS && count * 4 >= (u64::from(width) * u64::from(height)).min(MOST_PIXELS)
+            );
         }
     }
 }

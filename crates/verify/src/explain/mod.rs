@@ -121,8 +121,7 @@ fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
     let parallel = scene.camera.is_parallel();
     let light = survey.light();
     let mean = light / survey.pixel_samples();
-    let variance =
-        |p: &Pattern| survey.noise.variance(p, survey.passes_of_a_part()) / survey.pixels as f64;
+    let variance = |p: &Pattern| survey.noise.variance(p, survey.passes_of_a_part()) / survey.pixels as f64;
     let patterns: BTreeSet<Pattern> = survey.classes.keys().map(|c| (c.lamp(), c.pattern())).collect();
     let all: f64 = patterns.iter().map(variance).sum();
     let shares = by_pattern(survey.classes.iter().map(|(class, c)| (class, c.light)));

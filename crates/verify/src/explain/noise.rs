@@ -115,9 +115,8 @@ mod tests {
             }
             noise.add(part);
         }
-        let of = |pattern: &str| {
-            noise.variance(&(LampEnd::Surface, pattern.to_owned()), passes) / pixels as f64
-        };
+        let of =
+            |pattern: &str| noise.variance(&(LampEnd::Surface, pattern.to_owned()), passes) / pixels as f64;
         let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 0.1, "{found}");
         near(of("LDE"), 1.0 / 12.0);
         near(of("LDD+E"), 4.0 / 12.0);

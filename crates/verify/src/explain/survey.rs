@@ -216,7 +216,8 @@ impl Listener<'_, '_> {
         places.clear();
         if c.strategy.t == 1 {
             let camera = &self.kernel.scene().camera;
-            self.region.each_splatted((camera, self.kernel.filter()), c.film, |i, value| places.push((i, value)));
+            self.region
+                .each_splatted((camera, self.kernel.filter()), c.film, |i, value| places.push((i, value)));
         } else {
             places.extend(self.region.pixel(self.pixel).map(|i| (i, c.filter_weight)));
         }

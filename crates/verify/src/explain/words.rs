@@ -105,7 +105,9 @@ fn views(scene: &Scene, survey: &Survey, (place, complete): (&str, bool), said: 
                 .into(),
         );
     } else if most(v.inside_glass) {
-        said.push("The camera is inside a transparent object: all that it sees is seen through its surface.".into());
+        said.push(
+            "The camera is inside a transparent object: all that it sees is seen through its surface.".into(),
+        );
     }
     if survey.light() > 0.0 {
         return;
