@@ -50,9 +50,14 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// With its densities mixed up: a fault that can be planted.
-    pub(crate) fn swapped(self) -> Self {
-        Self { forward: self.reverse, reverse: self.forward, ..self }
+    /// With its densities mixed up, if that fault is planted.
+    #[inline]
+    pub(crate) fn perhaps_swapped(self) -> Self {
+        if is_planted(Fault::SwappedDensities) {
+            Self { forward: self.reverse, reverse: self.forward, ..self }
+        } else {
+            self
+        }
     }
 }
 
@@ -99,6 +104,7 @@ impl Vertex {
             Walk::FromCamera => {
                 let e = self.bsdf.eval(local, self.local_prev);
                 Scatter { value: e.value, forward: e.to_light_pdf, reverse: e.to_camera_pdf }
+                    .perhaps_swapped()
             }
             Walk::FromLight => {
                 let e = self.bsdf.eval(self.local_prev, local);
@@ -107,7 +113,6 @@ impl Vertex {
                 Scatter { value, forward: e.to_camera_pdf, reverse: e.to_light_pdf }
             }
         };
-        let scatter = if is_planted(Fault::SwappedDensities) { scatter.swapped() } else { scatter };
         (!scatter.value.is_black()).then_some(scatter)
     }
 

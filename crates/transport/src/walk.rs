@@ -158,7 +158,7 @@ impl Kernel<'_> {
             path.failed = true;
             return false;
         }
-        let scatter = if is_planted(Fault::SwappedDensities) { scatter.swapped() } else { scatter };
+        let scatter = if walk == Walk::FromCamera { scatter.perhaps_swapped() } else { scatter };
         flight.pdf = scatter.forward.0;
         flight.from = Some(vertex.point.position);
         flight.cos = vertex.cos(direction);
