@@ -133,6 +133,9 @@ impl Length {
     }
 }
 
+/// The most samples per pixel of `verify` and `explain`: there is a reference with twice as many, rounded up.
+const MOST_LOOKED_AT: i64 = 1 << 26;
+
 /// How to speak.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Voice {
@@ -269,7 +272,7 @@ pub struct Verify {
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Samples per pixel of each estimator; the reference has twice as many
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..))]
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=MOST_LOOKED_AT))]
     pub spp: u32,
     /// Edge of the blocks that are compared, in pixels; larger ones are made of these
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -296,7 +299,7 @@ pub struct Explain {
         value_parser = ["bdpt", "path", "path_ems", "naive", "light"])]
     pub integrator: String,
     /// Samples per pixel that are looked at
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=MOST_LOOKED_AT))]
     pub spp: u32,
     #[command(flatten)]
     pub sampling: Sampling,

@@ -174,7 +174,7 @@ impl PathClass {
 
     /// The class without the lengths of its chains: `LS+DE` for LSDE, LSSDE and so on.
     pub fn pattern(&self) -> String {
-        let text = |i: u8| match (self.first() == (i % 2 == 0), self.long_runs >> i & 1 != 0) {
+        let text = |i: u8| match (self.first() == i.is_multiple_of(2), self.long_runs >> i & 1 != 0) {
             (true, false) => "D",
             (true, true) => "DD+",
             (false, _) => "S+",

@@ -270,8 +270,8 @@ fn the_noise_is_that_of_the_picture() {
 #[test]
 fn mirrors_alone_under_a_point_light() {
     let mut d = dark_box();
-    let mirror = MaterialKind::Mirror { reflectance: Rgb::splat(0.9) };
-    d.materials.iter_mut().for_each(|m| m.kind = mirror.clone());
+    let mirror = || MaterialKind::Mirror { reflectance: Rgb::splat(0.9) };
+    d.materials.iter_mut().for_each(|m| m.kind = mirror());
     point_light(&mut d, [0.3, 0.5, 0.0], 2.0);
     let answer = says(d.clone(), to(8), &["shows mirrors or glass", "lamps without extent are not seen"]);
     assert_eq!(answer.sentences.len(), 1);
@@ -316,7 +316,7 @@ fn lamps_that_shine_on_nothing() {
 #[test]
 fn what_is_said_of_a_dozen_scenes() {
     let sun = LightKind::Directional { direction: [0.2, -1.0, 0.4], irradiance: Rgb::splat(3.0) };
-    let point = LightKind::Point { position: [0.3, 0.6, -0.2], intensity: Rgb::splat(3.0) };
+    let point = || LightKind::Point { position: [0.3, 0.6, -0.2], intensity: Rgb::splat(3.0) };
     let with_glass = |kind: LightKind| {
         let mut d = lit_by(kind);
         let m = glass(&mut d);
@@ -333,8 +333,8 @@ fn what_is_said_of_a_dozen_scenes() {
         ("lamp in glass", bulb(), to(12)),
         ("sky over glass", under_the_sky(glass_kind(false)), to(8)),
         ("sky over plastic", under_the_sky(plastic_kind()), to(8)),
-        ("point", lit_by(point.clone()), to(8)),
-        ("point over glass", with_glass(point), to(8)),
+        ("point", lit_by(point()), to(8)),
+        ("point over glass", with_glass(point()), to(8)),
         ("sun over glass", with_glass(sun), to(8)),
     ];
     for (name, d, settings) in cases {
