@@ -108,7 +108,7 @@ fn film([width, height]: [u32; 2], [x, y, w, h]: [u32; 4]) -> Vec<u8> {
     std::fs::read(path).expect("a small picture")
 }
 
-/// Film files; the last is larger than a chunk of them.
+/// Film files; the first has sums beyond 64 bits, the last is larger than a chunk of them.
 pub fn films() -> Vec<Vec<u8>> {
     let path = folder().path().join("seed.film");
     [[8, 6], [1, 1], [300, 220]]
@@ -121,6 +121,11 @@ pub fn films() -> Vec<Vec<u8>> {
                 (0..width * height).for_each(|i| {
                     film.half(pass).add_eye([i % width, i / width], Rgb::splat(i as f32));
                 });
+            }
+            let huge = if height == 6 { 9 } else { 0 };
+            for _ in 0..huge {
+                film.half(0).add_eye([1, 2], Rgb::new(1e30, -1e30, 1.0));
+                film.half(1).add_eye([3, 4], Rgb::new(-1e30, 1e30, 1.0));
             }
             film.finish_passes(0..3, true, true);
             let settings = [("seed".to_owned(), "3".to_owned())].into();

@@ -55,6 +55,18 @@ pub struct Scatter {
     pub reverse: SolidAnglePdf,
 }
 
+impl Scatter {
+    /// With its densities mixed up, if that fault is planted.
+    #[inline]
+    pub(crate) fn perhaps_swapped(self) -> Self {
+        if is_planted(Fault::SwappedDensities) {
+            Self { forward: self.reverse, reverse: self.forward, ..self }
+        } else {
+            self
+        }
+    }
+}
+
 impl Vertex {
     /// The vertex where a ray of direction `-prev` arrives. If it arrives on a side of the shading normal that is
     /// not that of the geometric one, nothing is scattered, whichever walk asks; but a lamp still shines. `label` is
@@ -179,14 +191,8 @@ impl Vertex {
         let scatter = match walk {
             Walk::FromCamera => {
                 let e = self.eval(local, local_prev);
-                if is_planted(Fault::SwappedDensities) {
-                    return (!e.value.is_black()).then_some(Scatter {
-                        value: e.value,
-                        forward: e.to_camera_pdf,
-                        reverse: e.to_light_pdf,
-                    });
-                }
                 Scatter { value: e.value, forward: e.to_light_pdf, reverse: e.to_camera_pdf }
+                    .perhaps_swapped()
             }
             Walk::FromLight => {
                 let e = self.eval(local_prev, local);
@@ -216,6 +222,7 @@ impl Vertex {
         }
         let value = match walk {
             Walk::FromCamera => s.value,
+            Walk::FromLight if is_planted(Fault::Adjoint) => s.value,
             Walk::FromLight => s.value * (cos.abs() / self.cos(self.prev)),
         };
         Some((next, Scatter { value, forward: s.pdf, reverse: s.reverse_pdf }, s.delta))

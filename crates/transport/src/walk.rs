@@ -161,6 +161,7 @@ impl Kernel<'_> {
             path.failed = true;
             return false;
         }
+        let scatter = if walk == Walk::FromCamera { scatter.perhaps_swapped() } else { scatter };
         flight.pdf = scatter.forward.0;
         flight.from = Some(vertex.point.position);
         flight.cos = vertex.cos(direction);
