@@ -3,6 +3,7 @@
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3, Wavelengths};
 use caustica_scene::Scene;
 use caustica_scene::bsdf::{Bsdf, Walk};
+use caustica_scene::light::Receiver;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::fault::{Fault, is_planted};
@@ -134,6 +135,18 @@ impl Vertex {
     #[inline]
     pub fn radiance_scale(&self, to_light: Vec3) -> f32 {
         self.bsdf.radiance_scale(self.point.normal.dot(to_light), self.local_prev.z)
+    }
+
+    /// How the vertex looks for lamps. (Of what scatters on one side alone, both ends of a path are on that side: whichever
+    /// of them `prev` leads to, the normal is the same.)
+    #[inline]
+    pub fn receiver(&self) -> Receiver {
+        let normal = match self.bsdf.transmits() {
+            true => Vec3::ZERO,
+            false if self.local_prev.z < 0.0 => -self.point.frame.z,
+            false => self.point.frame.z,
+        };
+        Receiver { at: self.point.position, normal }
     }
 
     /// Whether the vertex can be joined with another.

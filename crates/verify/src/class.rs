@@ -3,7 +3,7 @@
 use std::fmt;
 
 use caustica_scene::Scene;
-use caustica_scene::light::LightPoint;
+use caustica_scene::light::{Light, LightPoint};
 use caustica_transport::{Contribution, Strategy};
 
 /// What stands at the lamp's end of a path.
@@ -15,12 +15,17 @@ pub enum LampEnd {
     Environment,
     /// A lamp without extent, in place or direction: a point, a spot, a sun. No path hits it by chance.
     Dirac,
+    /// A surface that shines along its normals alone: it is neither hit, nor found by looking for it.
+    Collimated,
 }
 
 impl LampEnd {
     /// That of a point on a lamp.
     pub fn of(scene: &Scene, point: &LightPoint) -> Self {
         let light = scene.lamps().get(point.light);
+        if matches!(light, Light::Collimated(_)) {
+            return Self::Collimated;
+        }
         match (light.is_delta(), light.is_infinite()) {
             (true, _) => Self::Dirac,
             (false, true) => Self::Environment,
@@ -132,13 +137,13 @@ impl PathClass {
             return false;
         }
         match (s, t) {
-            (0, _) => self.lamp != LampEnd::Dirac,
+            (0, _) => !matches!(self.lamp, LampEnd::Dirac | LampEnd::Collimated),
             (1, 1) => match self.lamp {
                 LampEnd::Surface => true,
                 LampEnd::Environment => !parallel_camera,
-                LampEnd::Dirac => false,
+                LampEnd::Dirac | LampEnd::Collimated => false,
             },
-            (1, _) => self.first(),
+            (1, _) => self.first() && self.lamp != LampEnd::Collimated,
             (_, 1) => self.last,
             _ => self.is_diffuse(s - 2) && self.is_diffuse(s - 1),
         }
@@ -214,6 +219,9 @@ mod tests {
         };
         assert_eq!(made(Surface, ""), [(0, 2), (1, 1)]);
         assert_eq!(made(Dirac, ""), []);
+        assert_eq!(made(Collimated, ""), []);
+        assert_eq!(made(Collimated, "D"), [(2, 1)]);
+        assert_eq!(made(Collimated, "DD"), [(2, 2), (3, 1)]);
         assert_eq!(made(Surface, "D"), [(0, 3), (1, 2), (2, 1)]);
         assert_eq!(made(Dirac, "SDS"), []);
         assert_eq!(made(Surface, "SDS"), [(0, 5)]);

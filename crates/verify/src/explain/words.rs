@@ -21,6 +21,11 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
         }
         Light::Point { position: p, .. } => format!("the point light at ({}, {}, {})", p.x, p.y, p.z),
         Light::Spot(s) => format!("the spot at ({}, {}, {})", s.position.x, s.position.y, s.position.z),
+        Light::Projector(p) => {
+            let p = p.position();
+            format!("the projector at ({}, {}, {})", p.x, p.y, p.z)
+        }
+        Light::Collimated(_) => "a lamp that shines along its normals".to_owned(),
         Light::Directional(_) => "the directional light".to_owned(),
         Light::Environment(_) => "the environment".to_owned(),
     }
@@ -200,6 +205,9 @@ fn noise(scene: &Scene, question: &Question<'_>, (survey, rows): (&Survey, &[Row
         ["s=0"] => {
             "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface in \
              between, makes that likelier; else only samples help."
+        }
+        ["t=1"] if lamp_name(LampEnd::Collimated) == worst.lamp => {
+            "Only light paths find what shines along its normals: give the light image samples."
         }
         ["t=1"] => {
             "Only light paths find it: keep the light image, and give it samples; `path` would not find it at all."
