@@ -263,10 +263,14 @@ fn lights() {
         "<emitter type='projector'><float name='fov' value='50'/><float name='scale' value='3'/>{}</emitter>",
         checks.replace("TEXTURE", "irradiance")
     );
-    let LightKind::Projector { irradiance, scale: 3.0, fov, aspect: 1.0, .. } = light(&projector) else {
+    let LightKind::Projector { irradiance, scale, fov, aspect: 1.0, .. } = light(&projector) else {
         panic!()
     };
-    assert!(fov == 50.0 && matches!(irradiance, Texture::Checkerboard { .. }));
+    assert!(
+        fov == 50.0
+            && scale == 3.0 * std::f32::consts::PI
+            && matches!(irradiance, Texture::Checkerboard { .. })
+    );
     let beam = good(&scene(
         "<shape type='sphere'/><shape type='rectangle'><emitter type='directionalarea'>\
          <rgb name='radiance' value='1 2 3'/></emitter></shape>",

@@ -18,7 +18,7 @@ const EDGE: u64 = 28;
 const LAMP_TRIANGLE: u64 = 24;
 
 /// Bytes of a lamp, or of a triangle of one, in the hierarchy, and in the list that this is made from.
-const LAMP_PART: u64 = 120 + 64;
+const LAMP_PART: u64 = 148 + 64;
 
 /// Bytes that a lamp takes beside its own: its power, its part of the choice, and what it keeps elsewhere.
 const LAMP: u64 = 256;

@@ -137,7 +137,7 @@ fn pictures_and_beams() {
         &mut beam,
         LightKind::Collimated { shape: lamp as u32, exitance: Rgb::splat(3.0).into() },
     );
-    check("beam", beam, 600, &[Bdpt, Light, ODD]);
+    check("beam", beam, 600, &[Bdpt, Light]);
 }
 
 #[test]

@@ -4,6 +4,8 @@
 //! left corner. As atan2(x, −z) = π − atan2(x, z), that is u = ½ − atan2(x, z)/2π: ours. Its spot lights, directional
 //! lights and projectors shine along +z of their own frames.
 
+use std::f32::consts::PI;
+
 use caustica_math::{Rgb, Vec3};
 use caustica_scene::Diagnostic;
 use caustica_scene::description::{EnvironmentRows, Light, LightKind, Texture};
@@ -142,7 +144,8 @@ fn spot(fields: &mut Fields, cx: &mut Context) -> Result<LightKind, Diagnostic> 
 fn projector(fields: &mut Fields, cx: &mut Context) -> Result<LightKind, Diagnostic> {
     let to_world = fields.transform("to_world")?;
     let irradiance = texture::slot(fields, "irradiance", Role::Light, cx)?.unwrap_or(Rgb::WHITE.into());
-    let scale = fields.float("scale", 1.0, Bounds::NotNegative)?;
+    // At distance one there is π times the picture's irradiance.
+    let scale = PI * fields.float("scale", 1.0, Bounds::NotNegative)?;
     let aspect = match irradiance {
         Texture::Image { image, .. } => {
             let image = &cx.description.images[image.0 as usize];

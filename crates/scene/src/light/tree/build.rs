@@ -3,7 +3,7 @@
 use caustica_math::Vec3;
 
 use super::cone::Cone;
-use super::node::{Link, Node};
+use super::node::{Branch, Link, Node, WIDTH};
 use super::{DEEPEST, Leaf, LightTree, sphere};
 
 /// What becomes a leaf.
@@ -30,8 +30,9 @@ impl Item {
 /// How many bins an axis has.
 const BINS: usize = 16;
 
-/// Below this depth branches are halved, so that no way is longer than a trail's bits: there are at most 2³⁰ leaves.
-const HALVED: u32 = DEEPEST - 31;
+/// Below this depth branches are halved, so that no way is longer than a trail's bits: there are at most 2³⁰ leaves, and
+/// halving twice makes four.
+const HALVED: u32 = DEEPEST - 16;
 
 /// No leaf has a smaller share of all intensity: importances must stay numbers.
 const LEAST_SHARE: f64 = 1e-15;
@@ -87,7 +88,7 @@ impl Bin {
 
 /// A tree in the making.
 struct Builder {
-    pairs: Vec<[Node; 2]>,
+    nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     trails: Vec<u64>,
 }
@@ -109,49 +110,66 @@ impl LightTree {
         }
         let n = items.len();
         let mut builder = Builder {
-            pairs: Vec::with_capacity(n - 1),
+            nodes: Vec::with_capacity(2 * n / 3 + 1),
             leaves: Vec::with_capacity(n),
             trails: Vec::with_capacity(n),
         };
-        let (whole, ..) = builder.pair(&mut items, 0, 0);
+        let (whole, ..) = builder.node(&mut items, 0, 0);
         drop(items);
-        let Builder { pairs, leaves, trails } = builder;
+        let Builder { nodes, leaves, trails } = builder;
         let mut order = vec![0; n];
         for (index, leaf) in leaves.iter().enumerate() {
             order[(first[leaf.light as usize] + leaf.part) as usize] = index as u32;
         }
         let size = (whole.max - whole.min).length_squared();
         let scale = 1.0 / size.clamp(f32::MIN_POSITIVE, f32::MAX);
-        Some(Self { pairs, leaves, trails, first, order, scale: scale.min(f32::MAX) })
+        Some(Self { nodes, leaves, trails, first, order, scale })
     }
 }
 
 impl Builder {
-    /// Makes the pair of nodes for two items or more, and all below it.
-    fn pair(&mut self, items: &mut [Item], depth: u32, trail: u64) -> (Group, Cone, u32) {
-        let index = self.pairs.len();
+    /// Makes the node for two items or more, and all below it.
+    fn node(&mut self, items: &mut [Item], depth: u32, trail: u64) -> (Group, Cone, u32) {
+        let index = self.nodes.len();
         // Its place comes before those of its children.
-        let blank = Node::new((Vec3::ZERO, 0.0), Cone::ALL, 0.0, Link::Leaf(0));
-        self.pairs.push([blank; 2]);
-        let middle = split(items, depth);
-        let (a, b) = items.split_at_mut(middle);
-        let (first, a_group, a_cone) = self.node(a, depth + 1, trail);
-        let (second, b_group, b_cone) = self.node(b, depth + 1, trail | 1 << depth);
-        self.pairs[index] = [first, second];
-        (a_group.and(b_group), a_cone.around(b_cone), index as u32)
+        self.nodes.push(Node::new(&[]));
+        let mut parts: [&mut [Item]; WIDTH] = [items, &mut [], &mut [], &mut []];
+        let mut count = 1;
+        while count < WIDTH {
+            // The first of the largest.
+            let largest = (1..count).fold(0, |a, b| if parts[b].len() > parts[a].len() { b } else { a });
+            if parts[largest].len() < 2 {
+                break;
+            }
+            let part = std::mem::take(&mut parts[largest]);
+            let middle = split(part, depth);
+            (parts[largest], parts[count]) = part.split_at_mut(middle);
+            count += 1;
+        }
+        let mut branches = Vec::with_capacity(WIDTH);
+        let (mut group, mut cone) = (Group::NONE, None::<Cone>);
+        for (i, part) in parts.into_iter().enumerate().take(count) {
+            let way = trail | (i as u64) << (2 * depth);
+            let (branch, below) = self.branch(part, depth + 1, way);
+            cone = Some(cone.map_or(branch.cone, |cone| cone.around(branch.cone)));
+            group = group.and(below);
+            branches.push(branch);
+        }
+        self.nodes[index] = Node::new(&branches);
+        (group, cone.unwrap_or(Cone::ALL), index as u32)
     }
 
-    fn node(&mut self, items: &mut [Item], depth: u32, trail: u64) -> (Node, Group, Cone) {
+    fn branch(&mut self, items: &mut [Item], depth: u32, trail: u64) -> (Branch, Group) {
         let (group, cone, link) = if let [item] = items {
             self.leaves.push(item.leaf);
             self.trails.push(trail);
             (group_of(item), item.cone, Link::Leaf(self.leaves.len() as u32 - 1))
         } else {
-            let (group, cone, index) = self.pair(items, depth, trail);
-            (group, cone, Link::Pair(index))
+            let (group, cone, index) = self.node(items, depth, trail);
+            (group, cone, Link::Node(index))
         };
-        let node = Node::new(sphere(group.min, group.max), cone, group.intensity as f32, link);
-        (node, group, cone)
+        let sphere = sphere(group.min, group.max);
+        (Branch { sphere, cone, intensity: group.intensity as f32, link }, group)
     }
 }
 
@@ -159,7 +177,7 @@ fn group_of(item: &Item) -> Group {
     Group { min: item.min, max: item.max, intensity: item.intensity }
 }
 
-/// Puts the items of the first child first and returns how many they are: at least one, and not all.
+/// Puts the items of the first part first and returns how many they are: at least one, and not all.
 fn split(items: &mut [Item], depth: u32) -> usize {
     let half = items.len() / 2;
     if items.len() == 2 {
@@ -199,7 +217,7 @@ fn bin(item: &Item, axis: usize, low: Vec3, size: Vec3) -> usize {
     ((place * BINS as f32) as usize).min(BINS - 1)
 }
 
-/// The axis and the last bin of the first child, at the least cost.
+/// The axis and the last bin of the first part, at the least cost.
 fn best_cut(items: &[Item], low: Vec3, size: Vec3) -> Option<(usize, usize)> {
     let mut bins = [[Bin::NONE; BINS]; 3];
     let axes = (0..3).filter(|axis| size[*axis] > 0.0);

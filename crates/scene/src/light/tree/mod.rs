@@ -2,17 +2,17 @@
 //!
 //! After Conty Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018, without the
 //! splitting; see also Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, 12.6.3. A leaf is a lamp, or
-//! one triangle of one. A descent goes to the one or the other child by what may come from each at most; the same
+//! one triangle of one. A descent goes to one of a node's four branches by what may come from each at most; the same
 //! descent, led by a leaf's trail, tells the probability of having come there.
 
 mod build;
 mod cone;
 mod node;
 
-use caustica_math::{Mass, Vec3};
+use caustica_math::{Mass, ONE_BELOW, Vec3};
 
 use super::Receiver;
-use node::{Link, Node};
+use node::{Link, Node, WIDTH};
 
 pub use build::Item;
 pub use cone::Cone;
@@ -29,10 +29,10 @@ pub struct Leaf {
 /// The hierarchy.
 #[derive(Debug)]
 pub struct LightTree {
-    /// Siblings side by side; the first two are the root's.
-    pairs: Vec<[Node; 2]>,
+    /// The first is the root.
+    nodes: Vec<Node>,
     leaves: Vec<Leaf>,
-    /// The way to each leaf: bit i is set if the descent goes to the second child at depth i.
+    /// The way to each leaf: the branches that are taken, two bits for each depth.
     trails: Vec<u64>,
     /// Of each lamp, where its leaves begin in `order`.
     first: Vec<u32>,
@@ -42,44 +42,50 @@ pub struct LightTree {
     scale: f32,
 }
 
-/// The longest way to a leaf: a trail's bits.
-const DEEPEST: u32 = 64;
+/// The longest way to a leaf: a trail's bits, by two.
+const DEEPEST: u32 = 32;
 
-/// A branch that may give light is never less likely than this beside its sibling: its importance is but a guess.
+/// A branch that may give light is never less likely than this: its importance is but a guess.
 const LEAST: f32 = 1.0 / 1024.0;
 
-/// The probability of the first child; `None` if no light comes from either.
+/// What the branches' probabilities are in proportion to, and the sum of that. `None` if no light comes from any.
 #[inline]
-fn share([a, b]: &[Node; 2], to: &Receiver, scale: f32) -> Option<f32> {
-    let (a, b) = (a.importance(to, scale), b.importance(to, scale));
-    if a == 0.0 {
-        return (b != 0.0).then_some(0.0);
+fn shares(node: &Node, to: &Receiver, scale: f32) -> Option<([f32; WIDTH], f32)> {
+    let importances = node.importances(to, scale);
+    let sum = importances[0] + importances[1] + importances[2] + importances[3];
+    if sum.is_nan() || sum <= 0.0 {
+        return None;
     }
-    Some(if b == 0.0 { 1.0 } else { (a / (a + b)).clamp(LEAST, 1.0 - LEAST) })
+    let inverse = 1.0 / sum;
+    let shares = importances.map(|i| if i > 0.0 { (i * inverse).max(LEAST) } else { 0.0 });
+    Some((shares, shares[0] + shares[1] + shares[2] + shares[3]))
 }
 
 impl LightTree {
     /// Chooses a leaf for a place by `u` in [0, 1); `None` if no leaf's light arrives there.
     #[inline]
     pub fn choose(&self, to: &Receiver, mut u: f64) -> Option<(Leaf, Mass)> {
-        let (mut pair, mut mass) = (0, 1.0_f32);
+        let (mut index, mut mass) = (0, 1.0_f32);
         loop {
-            let nodes = &self.pairs[pair as usize];
-            let first = share(nodes, to, self.scale)?;
-            let wide = f64::from(first);
-            let node = if u < wide {
-                u /= wide;
-                mass *= first;
-                &nodes[0]
-            } else {
-                u = (u - wide) / (1.0 - wide);
-                mass *= 1.0 - first;
-                &nodes[1]
-            };
-            match node.link() {
-                Link::Pair(next) => pair = next,
+            let node = &self.nodes[index as usize];
+            let (shares, total) = shares(node, to, self.scale)?;
+            let mut left = u * f64::from(total);
+            // Rounding may leave something beyond all: that is the last one's.
+            let (mut branch, mut before) = (WIDTH, 0.0);
+            for (i, share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+                (branch, before) = (i, left);
+                left -= f64::from(*share);
+                if left < 0.0 {
+                    break;
+                }
+            }
+            let share = shares[branch];
+            mass *= share / total;
+            match node.link(branch) {
+                Link::Node(next) => index = next,
                 Link::Leaf(leaf) => return Some((self.leaves[leaf as usize], Mass(mass))),
             }
+            u = (before / f64::from(share)).min(ONE_BELOW.into());
         }
     }
 
@@ -88,17 +94,17 @@ impl LightTree {
     pub fn mass(&self, to: &Receiver, leaf: Leaf) -> Mass {
         let index = self.order[(self.first[leaf.light as usize] + leaf.part) as usize];
         let mut trail = self.trails[index as usize];
-        let (mut pair, mut mass) = (0, 1.0_f32);
+        let (mut index, mut mass) = (0, 1.0_f32);
         loop {
-            let nodes = &self.pairs[pair as usize];
-            let Some(first) = share(nodes, to, self.scale) else { return Mass(0.0) };
-            let side = (trail & 1) as usize;
-            mass *= if side == 0 { first } else { 1.0 - first };
-            match nodes[side].link() {
-                Link::Pair(next) if mass > 0.0 => pair = next,
+            let node = &self.nodes[index as usize];
+            let Some((shares, total)) = shares(node, to, self.scale) else { return Mass(0.0) };
+            let branch = trail as usize % WIDTH;
+            mass *= shares[branch] / total;
+            match node.link(branch) {
+                Link::Node(next) if mass > 0.0 => index = next,
                 _ => return Mass(mass),
             }
-            trail >>= 1;
+            trail /= WIDTH as u64;
         }
     }
 
