@@ -234,9 +234,43 @@ fn lights() {
     assert_eq!(light(sky), LightKind::Constant { radiance: Rgb::splat(4.0) });
     let spot = "<emitter type='spot'><float name='cutoff_angle' value='30'/><float name='beam_width' value='30'/>\
         <transform name='to_world'><lookat origin='1,2,3' target='1,2,4' up='0,1,0'/></transform></emitter>";
-    let LightKind::Spot { position, direction, inner_angle, outer_angle, .. } = light(spot) else { panic!() };
-    assert_eq!((position, direction), ([1.0, 2.0, 3.0], [0.0, 0.0, 1.0]));
+    let LightKind::LinearSpot { to_world, inner_angle, outer_angle, picture: None, .. } = light(spot) else {
+        panic!()
+    };
+    assert_eq!((to_world.point(Vec3::ZERO), to_world.vector(Vec3::Z)), (Vec3::new(1.0, 2.0, 3.0), Vec3::Z));
     assert_eq!((inner_angle, outer_angle), (30.0, 30.0));
+    let checks = "<texture type='checkerboard' name='TEXTURE'/>";
+    let behind = |angle: &str| {
+        format!(
+            "§<emitter type='spot'><float name='cutoff_angle' value='{angle}'/>{}</emitter>",
+            checks.replace("TEXTURE", "texture")
+        )
+    };
+    assert!(matches!(
+        light(&behind("40").replace('§', "")),
+        LightKind::LinearSpot { picture: Some(Texture::Checkerboard { .. }), inner_angle: 30.0, .. }
+    ));
+    refused(&scene(&behind("90")), "`cutoff_angle` below 90°");
+    let projector = format!(
+        "<emitter type='projector'><float name='fov' value='50'/><float name='scale' value='3'/>{}</emitter>",
+        checks.replace("TEXTURE", "irradiance")
+    );
+    let LightKind::Projector { irradiance, scale, fov, aspect: 1.0, .. } = light(&projector) else {
+        panic!()
+    };
+    assert!(
+        fov == 50.0
+            && scale == 3.0 * std::f32::consts::PI
+            && matches!(irradiance, Texture::Checkerboard { .. })
+    );
+    let beam = good(&scene(
+        "<shape type='sphere'/><shape type='rectangle'><emitter type='directionalarea'>\
+         <rgb name='radiance' value='1 2 3'/></emitter></shape>",
+    ));
+    let exitance = Texture::Constant(Rgb::new(1.0, 2.0, 3.0));
+    assert_eq!(beam.lights[0].kind, LightKind::Collimated { shape: 1, exitance });
+    assert_eq!(beam.shapes[1].emission, None);
+    refused(&scene("§<emitter type='directionalarea'/>"), "cannot stand alone");
     let area = good(&scene(
         "<shape type='rectangle'><emitter type='area'><rgb name='radiance' value='1 2 3'/></emitter></shape>",
     ));

@@ -157,7 +157,9 @@ pub(crate) fn material_name(kind: &MaterialKind) -> &'static str {
 fn light_name(kind: &LightKind) -> &'static str {
     match kind {
         LightKind::Point { .. } => "point",
-        LightKind::Spot { .. } => "spot",
+        LightKind::Spot { .. } | LightKind::LinearSpot { .. } => "spot",
+        LightKind::Projector { .. } => "projector",
+        LightKind::Collimated { .. } => "collimated surface",
         LightKind::Directional { .. } => "directional",
         LightKind::Constant { .. } => "constant environment",
         LightKind::Environment { .. } => "environment map",

@@ -1,22 +1,21 @@
 //! The flat scene: what rays run on.
 
-use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
+mod lamps;
+
+use caustica_math::{Frame, MemoryLimit, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
-use crate::camera::{Camera, shears};
+use crate::camera::Camera;
 use crate::casters::Casters;
 use crate::description::{
     Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialKind, Texture,
 };
 use crate::diagnostic::Diagnostic;
-use crate::light::{
-    AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
-    SpotLight, Surroundings, power_through_disk,
-};
+use crate::light::{AreaLight, Light, LightPoint, LightQuery, Lights, Surroundings};
 use crate::material::bsdf_at;
 use crate::references;
-use crate::surface::{FlatShape, SurfacePoint, Surfaces, is_reachable};
+use crate::surface::{FlatShape, SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 use crate::traits::{self, Traits, varies};
 use crate::{figures, memory};
@@ -85,6 +84,11 @@ impl Scene {
             flat.is_wrapped = material.is_wrapped;
             flat.is_mixed = material.is_mixed;
         }
+        for light in &description.lights {
+            if let LightKind::Collimated { shape, exitance } = &light.kind {
+                surfaces.shapes[*shape as usize].needs_uv |= varies(exitance);
+            }
+        }
         let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();
         let (center, radius) = if bounds.is_empty() {
@@ -149,75 +153,7 @@ impl Scene {
                 _ => warnings.push(Diagnostic::warning("this lamp emits nothing").at(light.origin.clone())),
             }
         }
-        Ok(Lights::new(lights, &powers))
-    }
-
-    /// The lamp and its power.
-    fn flatten_light(&self, kind: &LightKind, w: Wavelengths) -> Result<Option<(Light, f64)>, &'static str> {
-        let around = self.surroundings(w);
-        let unit =
-            |d: [f32; 3]| Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero");
-        let at = |p: [f32; 3]| {
-            let p = Vec3::from(p);
-            if is_reachable(p) { Ok(p) } else { Err("the lamp's position must be finite, and within 1e15") }
-        };
-        let colour = |c: Rgb| {
-            if c.is_valid() {
-                Ok(w.spectrum(c))
-            } else {
-                Err("a lamp's colour must be finite and not negative")
-            }
-        };
-        let full = 4.0 * std::f64::consts::PI;
-        let luminance = |s| f64::from(w.luminance(s));
-        Ok(Some(match *kind {
-            LightKind::Point { position, intensity } => {
-                let intensity = colour(intensity)?;
-                (Light::Point { position: at(position)?, intensity }, full * luminance(intensity))
-            }
-            LightKind::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-                if !(0.0 <= inner_angle
-                    && inner_angle <= outer_angle
-                    && outer_angle <= 180.0
-                    && outer_angle > 0.0)
-                {
-                    return Err("a spot's angles must satisfy 0 ≤ inner ≤ outer ≤ 180 degrees");
-                }
-                let intensity = colour(intensity)?;
-                let spot =
-                    SpotLight::new(at(position)?, unit(direction)?, intensity, inner_angle, outer_angle);
-                (Light::Spot(spot), f64::from(spot.solid_angle()) * luminance(intensity))
-            }
-            LightKind::Directional { direction, irradiance } => {
-                let irradiance = colour(irradiance)?;
-                let power = power_through_disk(luminance(irradiance), self.radius);
-                (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
-            }
-            LightKind::Constant { radiance } => {
-                let light = EnvironmentLight::Constant(colour(radiance)?);
-                let power = power_through_disk(light.flux(&around), self.radius);
-                (Light::Environment(light), power)
-            }
-            LightKind::Environment { image, to_world, scale } => {
-                let axis = |a| to_world.vector(a).try_normalized();
-                let (Some(x), Some(y), Some(z)) = (axis(Vec3::X), axis(Vec3::Y), axis(Vec3::Z)) else {
-                    return Err("the environment's transform cannot be inverted");
-                };
-                if shears([x, y, z]) {
-                    return Err("the environment's transform shears space: its axes must be at right angles");
-                }
-                if !(scale >= 0.0 && scale.is_finite()) {
-                    return Err("the environment's scale must be finite and not negative");
-                }
-                let pixels = &self.images[image.0 as usize];
-                let Some(map) = EnvironmentMap::new(image.0, pixels, scale, [x, y, z]) else {
-                    return Ok(None);
-                };
-                let light = EnvironmentLight::Map(Box::new(map));
-                let power = power_through_disk(light.flux(&around), self.radius);
-                (Light::Environment(light), power)
-            }
-        }))
+        Ok(Lights::new(lights, &powers).with_hierarchy(&powers, &self.surroundings(w)))
     }
 
     fn surroundings(&self, wavelengths: Wavelengths) -> Surroundings<'_> {

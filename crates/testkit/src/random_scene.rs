@@ -123,6 +123,7 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
             image: caustica_scene::description::ImageId(choices.below(2) as u32),
             to_world: Transform::rotate(f64::from(choices.signed()) * 180.0, [0.0, 1.0, 0.3]),
             scale: choices.unit(),
+            rows: Default::default(),
         },
     };
     light(d, kind);

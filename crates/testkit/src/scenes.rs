@@ -123,7 +123,7 @@ pub fn sky(d: &mut Description) {
     pixels[2 * 16 + 5] = Rgb::new(60.0, 50.0, 40.0);
     let image = d.add_image(Image { width: 16, height: 8, pixels: pixels.into() });
     let to_world = Transform::rotate(40.0, [0.0, 1.0, 0.2]);
-    light(d, LightKind::Environment { image, to_world, scale: 0.5 });
+    light(d, LightKind::Environment { image, to_world, scale: 0.5, rows: Default::default() });
 }
 
 /// A ball on a floor under a sky.

@@ -4,6 +4,7 @@ use caustica_math::{Frame, SolidAnglePdf, Spectrum, Vec3, Wavelengths};
 use caustica_scene::Scene;
 use caustica_scene::bsdf::{Bsdf, Bump, Evaluated, Walk};
 use caustica_scene::description::BumpRule;
+use caustica_scene::light::Receiver;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::fault::{Fault, is_planted};
@@ -233,6 +234,19 @@ impl Vertex {
     #[inline]
     pub fn radiance_scale(&self, to_light: Vec3) -> f32 {
         self.bsdf.radiance_scale(self.side(to_light), self.local_prev().z)
+    }
+
+    /// How the vertex looks for lamps. (Of what scatters on one side alone, both ends of a path are on that side: whichever
+    /// of them `prev` leads to, the normal is the same.)
+    #[inline]
+    pub fn receiver(&self) -> Receiver {
+        // A bump scatters towards what is below the surface's own horizon, too.
+        let normal = match self.bsdf.transmits() || self.bump.is_some() {
+            true => Vec3::ZERO,
+            false if self.local.z < 0.0 => -self.point.frame.z,
+            false => self.point.frame.z,
+        };
+        Receiver { at: self.point.position, normal }
     }
 
     /// Whether the vertex can be joined with another.

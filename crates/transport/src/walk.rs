@@ -202,7 +202,7 @@ impl Kernel<'_> {
                 let mut sums = RunningSums::default();
                 if self.classes.next_event {
                     // One vertex less is s = 1, which finds the lamp by another density.
-                    let found = lights.towards_pdf(vertex.point.position, &emission.point);
+                    let found = lights.towards_pdf(vertex.receiver(), &emission.point);
                     sums.recent = found.0 * emitted * inverse;
                 }
                 if self.classes.hit && !lights.lights.get(emission.point.light).is_delta() {

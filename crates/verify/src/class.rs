@@ -4,7 +4,7 @@ use std::fmt;
 
 use caustica_scene::Scene;
 use caustica_scene::camera::Joins;
-use caustica_scene::light::LightPoint;
+use caustica_scene::light::{Light, LightPoint};
 use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Strategy};
 
@@ -17,12 +17,17 @@ pub enum LampEnd {
     Environment,
     /// A lamp without extent, in place or direction: a point, a spot, a sun. No path hits it by chance.
     Dirac,
+    /// A surface that shines along its normals alone: it is neither hit, nor found by looking for it.
+    Collimated,
 }
 
 impl LampEnd {
     /// That of a point on a lamp.
     pub fn of(scene: &Scene, point: &LightPoint) -> Self {
         let light = scene.lamps().get(point.light);
+        if matches!(light, Light::Collimated(_)) {
+            return Self::Collimated;
+        }
         match (light.is_delta(), light.is_infinite()) {
             (true, _) => Self::Dirac,
             (false, true) => Self::Environment,
@@ -162,13 +167,13 @@ impl PathClass {
         }
         match (s, t) {
             (_, 1) if camera == Joins::Nothing => false,
-            (0, _) => self.lamp != LampEnd::Dirac,
+            (0, _) => !matches!(self.lamp, LampEnd::Dirac | LampEnd::Collimated),
             (1, 1) => match self.lamp {
                 LampEnd::Surface => true,
                 LampEnd::Environment => camera == Joins::All,
-                LampEnd::Dirac => false,
+                LampEnd::Dirac | LampEnd::Collimated => false,
             },
-            (1, _) => self.first(),
+            (1, _) => self.first() && self.lamp != LampEnd::Collimated,
             (_, 1) => self.last(),
             _ => self.is_pair(s - 2),
         }
@@ -258,6 +263,9 @@ mod tests {
         };
         assert_eq!(made(Surface, ""), [(0, 2), (1, 1)]);
         assert_eq!(made(Dirac, ""), []);
+        assert_eq!(made(Collimated, ""), []);
+        assert_eq!(made(Collimated, "D"), [(2, 1)]);
+        assert_eq!(made(Collimated, "DD"), [(2, 2), (3, 1)]);
         assert_eq!(made(Surface, "D"), [(0, 3), (1, 2), (2, 1)]);
         assert_eq!(made(Dirac, "SDS"), []);
         assert_eq!(made(Surface, "SDS"), [(0, 5)]);
@@ -293,8 +301,9 @@ mod tests {
         }
         assert_eq!(hidden("DD").pattern(), "LS+(D|S)*S+E");
         // A pair of D in the middle can be joined, wherever it is.
-        let inner =
-            |c: &PathClass| (2..c.len()).any(|s| c.is_made_by(Strategy { s, t: c.len() + 2 - s }, Joins::All));
+        let inner = |c: &PathClass| {
+            (2..c.len()).any(|s| c.is_made_by(Strategy { s, t: c.len() + 2 - s }, Joins::All))
+        };
         assert!(inner(&hidden("DD")) && !inner(&hidden("")));
         // Up to 64 vertices, all is remembered.
         let text = format!("{}D{}", "S".repeat(40), "S".repeat(23));

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
 pub use integrator::{Integrator, Technique};
-pub use light::{Light, LightKind};
+pub use light::{EnvironmentRows, Light, LightKind};
 pub use material::{
     Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,
 };

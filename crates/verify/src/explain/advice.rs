@@ -77,6 +77,9 @@ fn advice(row: &Row) -> String {
             "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface \
              in between, makes that likelier; else only samples help."
         }
+        ["t=1"] if is(LampEnd::Collimated) => {
+            "Only light paths find what shines along its normals: give the light image samples."
+        }
         ["t=1"] => {
             "Only light paths find it: keep the light image, and give it samples; `path` would not find it at all."
         }

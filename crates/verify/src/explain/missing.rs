@@ -170,14 +170,17 @@ fn cell(at: Vec3, near: f32) -> [i32; 3] {
 /// Where a light path of a lamp without extent arrives over S first, and never over two D in a row.
 fn arrivals(scene: &Scene, paths: &Subpaths<'_>, photons: &mut Vec<Photon>) {
     let Some(emission) = &paths.emission else { return };
-    if LampEnd::of(scene, &emission.point) != LampEnd::Dirac {
-        return;
-    }
+    // Next-event estimation finds lamps without extent from the first D, and nothing finds what shines along normals.
+    let sought = match LampEnd::of(scene, &emission.point) {
+        LampEnd::Dirac => true,
+        LampEnd::Collimated => false,
+        LampEnd::Surface | LampEnd::Environment => return,
+    };
     for (i, v) in paths.light.iter().enumerate() {
         let before = i.checked_sub(1).map(|j| paths.light[j].is_connectible());
         if v.is_connectible() {
             // Next-event estimation or inner connections reach whatever follows.
-            if before != Some(false) {
+            if before.unwrap_or(sought) {
                 return;
             }
             photons.push(Photon {

@@ -19,6 +19,11 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
         }
         Light::Point { position: p, .. } => format!("the point light at ({}, {}, {})", p.x, p.y, p.z),
         Light::Spot(s) => format!("the spot at ({}, {}, {})", s.position.x, s.position.y, s.position.z),
+        Light::Projector(p) => {
+            let p = p.position();
+            format!("the projector at ({}, {}, {})", p.x, p.y, p.z)
+        }
+        Light::Collimated(_) => "a lamp that shines along its normals".to_owned(),
         Light::Directional(_) => "the directional light".to_owned(),
         Light::Environment(_) => "the environment".to_owned(),
     }
@@ -88,7 +93,7 @@ fn shines_on_nothing(scene: &Scene, names: &[String], lamp: u32) -> String {
         Light::Area(_) => {
             "it faces away from everything. A lamp emits on the side of its normal: reverse its triangles, or turn it"
         }
-        Light::Spot(_) => "it points away from everything: turn it",
+        Light::Spot(_) | Light::Projector(_) | Light::Collimated(_) => "it points away from everything: turn it",
         Light::Directional(_) => "it shines past everything: check its direction",
         Light::Point { .. } | Light::Environment(_) => "there is nothing that it could shine on",
     };
