@@ -13,7 +13,7 @@ use crate::light::{
 };
 use crate::material::bsdf_at;
 use crate::references;
-use crate::surface::{SurfacePoint, Surfaces, is_reachable};
+use crate::surface::{FARTHEST, SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
 use crate::{figures, memory};
 
@@ -71,11 +71,17 @@ impl Scene {
         figures::check(&description)?;
         let camera = Camera::new(&description.camera, &film)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
-        for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
+        surfaces.add_groups(&mut description, &mut warnings)?;
+        surfaces.set_needs_uv(description.all_shapes().map(|shape| {
             let material = &description.materials[shape.material.0 as usize].kind;
-            flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
-        }
-        let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
+            [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies)
+        }));
+        let bvh = surfaces.tree(tree).map_err(|i| {
+            let beyond = &description.instances[i as usize];
+            let name = &description.groups[beyond.group.0 as usize].name;
+            let message = format!("an instance of {name} reaches farther than {FARTHEST:e} from the origin");
+            Diagnostic::error(message).at(beyond.origin.clone())
+        })?;
         let bounds = bvh.bounds();
         let (center, radius) = if bounds.is_empty() {
             (camera.position(), 1.0)

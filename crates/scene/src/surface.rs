@@ -2,11 +2,15 @@
 
 mod border;
 mod flatten;
+mod groups;
+
+use std::sync::Arc;
 
 use caustica_math::elementary::{asin, atan2};
 use caustica_math::{Frame, Vec2, Vec3, spherical};
 
-use crate::bvh::{Hit, SphereData};
+use crate::bvh::{Hit, Instance, SphereData};
+use groups::Group;
 
 pub(crate) use flatten::{FARTHEST, is_reachable, unreachable};
 
@@ -45,7 +49,7 @@ pub struct SurfacePoint {
     pub uv: Vec2,
     /// Index of the shape.
     pub shape: u32,
-    /// Id of the triangle or sphere.
+    /// Id of the triangle or sphere; in an instance, the id in its group.
     pub primitive: u32,
     /// How far rays must start off the surface so that they do not meet it again, by rounding.
     pub offset: f32,
@@ -62,7 +66,7 @@ impl SurfacePoint {
 /// The tables of all surfaces.
 #[derive(Debug, Default)]
 pub struct Surfaces {
-    /// Shapes in the order of the description.
+    /// Shapes in the order of the description, then those of its groups, with primitives by their ids there.
     pub shapes: Vec<FlatShape>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -70,6 +74,8 @@ pub struct Surfaces {
     triangles: Vec<[u32; 3]>,
     triangle_shapes: Vec<u32>,
     spheres: Vec<FlatSphere>,
+    groups: Vec<Group>,
+    instances: Arc<[Instance]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -134,12 +140,15 @@ impl Surfaces {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.triangle_shapes)
             + size_of_val(&*self.spheres)
+            + self.groups().map(Self::memory).sum::<usize>()
     }
 
     /// The point that was hit, coming from `origin` along `direction`.
     #[inline(always)]
     pub fn point(&self, hit: &Hit, origin: Vec3, direction: Vec3) -> SurfacePoint {
-        if (hit.primitive as usize) < self.triangles.len() {
+        if hit.instance != Hit::NO_INSTANCE {
+            self.point_inside(hit, origin, direction)
+        } else if (hit.primitive as usize) < self.triangles.len() {
             self.point_between(hit.primitive, &hit.corners, [hit.b1, hit.b2])
         } else {
             let sphere = &self.spheres[hit.primitive as usize - self.triangles.len()];

@@ -29,13 +29,8 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
 /// What is called a shape in a sentence, with its material.
 pub fn shape_words(scene: &Scene, names: &[String], shape: u32) -> String {
     let name = names.get(shape as usize).map_or("?", String::as_str);
-    let flat = &scene.surfaces().shapes[shape as usize];
-    let primitive = flat.first_primitive;
-    let kind = match scene.surfaces().sphere(primitive) {
-        Some(_) => scene.surfaces().sphere_point(primitive, caustica_math::Vec3::X),
-        None => scene.surfaces().triangle_point(primitive, 0.3, 0.3),
-    };
-    let kind = match scene.bsdf(&kind, caustica_math::Wavelengths::Rgb) {
+    let point = scene.surfaces().some_point(shape);
+    let kind = match scene.bsdf(&point, caustica_math::Wavelengths::Rgb) {
         Bsdf::Dielectric(_) => "smooth glass",
         Bsdf::Mirror { .. } => "mirror",
         Bsdf::Conductor(_) => "smooth metal",
