@@ -51,6 +51,8 @@ pub struct SurfacePoint {
     pub shape: u32,
     /// Id of the triangle or sphere; in an instance, the id in its group.
     pub primitive: u32,
+    /// Number of the instance that it lies in; [`Hit::NO_INSTANCE`] if in none.
+    pub instance: u32,
     /// How far rays must start off the surface so that they do not meet it again, by rounding.
     pub offset: f32,
 }
@@ -205,6 +207,7 @@ impl Surfaces {
             uv,
             shape,
             primitive,
+            instance: Hit::NO_INSTANCE,
             offset: extent * POSITION_ERROR + f32::MIN_POSITIVE,
         }
     }
@@ -230,6 +233,7 @@ impl Surfaces {
             uv,
             shape: sphere.shape,
             primitive,
+            instance: Hit::NO_INSTANCE,
             offset: (d.center.abs().max_element() + d.radius) * POSITION_ERROR + f32::MIN_POSITIVE,
         }
     }

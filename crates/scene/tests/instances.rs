@@ -55,6 +55,8 @@ fn hits_are_those_of_the_flattened_scene() {
         let ray = inward(Vec3::ZERO, 1.0, &mut s);
         let (p, q) = (a.closest(&ray), b.closest(&ray));
         assert_eq!(p.is_some(), a.occluded(&ray), "{ray:?}");
+        let instanced = p.is_some_and(|p| p.instance != Hit::NO_INSTANCE);
+        assert_eq!(instanced, p.is_some_and(|p| p.shape as usize >= own));
         let (Some(p), Some(q)) = (&p, &q) else {
             unlike += u32::from(p.is_some() != q.is_some());
             continue;

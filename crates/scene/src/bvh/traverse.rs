@@ -107,7 +107,7 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             current = child_of(unsafe { stack.read(waiting) });
         }
         if current.is_leaf() {
-            test_leaf((bvh, blocks), current, &lanes, &mut best, &mut solid);
+            test_leaf((bvh, blocks), current, (ray, &lanes), &mut best, &mut solid);
         }
         loop {
             if waiting == 0 {
@@ -196,7 +196,7 @@ fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>, solid: 
 fn test_leaf<L: Lanes, const P: bool>(
     (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
-    lanes: &LaneRay<L, P>,
+    (ray, lanes): (&Ray, &LaneRay<L, P>),
     best: &mut Best<L>,
     solid: &mut Option<Hit>,
 ) {
@@ -207,7 +207,7 @@ fn test_leaf<L: Lanes, const P: bool>(
         }
         return;
     }
-    if let Some((t, primitive)) = test_solids(bvh, leaf, lanes.source(), (best.t, best.primitive), solid) {
+    if let Some((t, primitive)) = test_solids(bvh, leaf, ray, (best.t, best.primitive), solid) {
         (best.t, best.primitive, best.place) = (t, primitive, SOLID);
     }
 }

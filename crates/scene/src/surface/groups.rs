@@ -78,10 +78,11 @@ impl Surfaces {
     pub(super) fn point_inside(&self, hit: &Hit, origin: Vec3, direction: Vec3) -> SurfacePoint {
         let place = &self.instances[hit.instance as usize];
         let group = &self.groups[place.group as usize];
-        let hit = Hit { instance: Hit::NO_INSTANCE, ..*hit };
+        let inside = Hit { instance: Hit::NO_INSTANCE, ..*hit };
         let (origin, direction) = (place.to_group.point(origin), place.to_group.vector(direction));
-        let p = group.surfaces.point(&hit, origin, direction);
-        SurfacePoint { shape: p.shape + group.first_shape, ..in_world(&p, place) }
+        let p = group.surfaces.point(&inside, origin, direction);
+        let (shape, instance) = (p.shape + group.first_shape, hit.instance);
+        SurfacePoint { shape, instance, ..in_world(&p, place) }
     }
 
     /// Some point of a shape, wherever its group stands.
