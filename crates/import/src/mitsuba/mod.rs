@@ -11,6 +11,7 @@ mod context;
 mod emitter;
 mod fields;
 mod file;
+mod instance;
 mod integrator;
 mod ior;
 mod parse;
