@@ -26,6 +26,9 @@ const LAMP: u64 = 256;
 /// Bytes of a pixel of an environment, or of a picture that is thrown, in the table by which it is chosen, and in what that is made from.
 const ENVIRONMENT_PIXEL: u64 = 12;
 
+/// Bytes of an instance: its transforms, its box, and itself in the tree.
+const INSTANCE: u64 = 400;
+
 /// The most bytes that [`Scene::within`](crate::Scene::within) takes at a time, beside the description's own.
 pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
     let size = |s: &Shape| match &s.geometry {
@@ -36,7 +39,7 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
         Geometry::Sphere { .. } => (1, 64),
     };
     let (mut primitives, mut tables, mut edges, mut lamps) = (0, 0, 0, 0);
-    for shape in &d.shapes {
+    for shape in d.all_shapes() {
         let (count, bytes) = size(shape);
         primitives += count;
         tables += bytes + 48;
@@ -47,6 +50,7 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
             lamps += (LAMP_TRIANGLE + LAMP_PART) * count + LAMP + size_of::<Light>() as u64;
         }
     }
+    tables += INSTANCE * d.instances.len() as u64;
     for light in &d.lights {
         lamps += LAMP + LAMP_PART + size_of::<Light>() as u64 + tables_of(&light.kind, d);
     }

@@ -35,6 +35,26 @@ fn light(kind: &LightKind, d: &Description) -> Result<(), Diagnostic> {
     placement(texture, "a lamp's picture")
 }
 
+/// Groups have shapes and no lamps, and instances are of groups that exist.
+fn groups(d: &Description) -> Result<(), Diagnostic> {
+    for group in &d.groups {
+        if let Some(lamp) = group.shapes.iter().find(|s| s.emission.is_some()) {
+            let message = format!("{} is a lamp in the group {}", lamp.name, group.name);
+            return Err(Diagnostic::error(message)
+                .at(lamp.origin.clone())
+                .hint("what has instances cannot emit: put the lamp beside them"));
+        }
+    }
+    for instance in &d.instances {
+        let group = d.groups.get(instance.group.0 as usize);
+        if group.is_none_or(|g| g.shapes.is_empty()) {
+            return Err(Diagnostic::error("an instance is of a group that has no shapes or does not exist")
+                .at(instance.origin.clone()));
+        }
+    }
+    Ok(())
+}
+
 /// Every id must name something, and every colour be one.
 pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
     let image_exists = |t: &Texture| match t {
@@ -64,7 +84,8 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
             );
         }
     }
-    for s in &d.shapes {
+    groups(d)?;
+    for s in d.all_shapes() {
         if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t))
         {
             return Err(Diagnostic::error(format!(

@@ -9,13 +9,13 @@ use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::Camera;
 use crate::casters::Casters;
 use crate::description::{
-    Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialKind, Texture,
+    Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialId, MaterialKind, Texture,
 };
 use crate::diagnostic::Diagnostic;
 use crate::light::{AreaLight, Light, LightPoint, LightQuery, Lights, Surroundings};
 use crate::material::bsdf_at;
 use crate::references;
-use crate::surface::{FlatShape, SurfacePoint, Surfaces};
+use crate::surface::{FARTHEST, FlatShape, SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 use crate::traits::{self, Traits, varies};
 use crate::{figures, memory};
@@ -77,19 +77,23 @@ impl Scene {
         let traits = traits::of_all(&description.materials)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         let camera = Camera::among(&surfaces, &description.camera, &film)?;
-        for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
+        surfaces.add_groups(&mut description, &mut warnings)?;
+        surfaces.mark(description.all_shapes().map(|shape| {
             let material = traits[shape.material.0 as usize];
-            flat.needs_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
-            flat.needs_tangents = material.is_oriented;
-            flat.is_wrapped = material.is_wrapped;
-            flat.is_mixed = material.is_mixed;
-        }
+            let uses_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
+            Traits { uses_uv, ..material }
+        }));
         for light in &description.lights {
             if let LightKind::Collimated { shape, exitance } = &light.kind {
                 surfaces.shapes[*shape as usize].needs_uv |= varies(exitance);
             }
         }
-        let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
+        let bvh = surfaces.tree(tree).map_err(|i| {
+            let beyond = &description.instances[i as usize];
+            let name = &description.groups[beyond.group.0 as usize].name;
+            let message = format!("an instance of {name} reaches farther than {FARTHEST:e} from the origin");
+            Diagnostic::error(message).at(beyond.origin.clone())
+        })?;
         let bounds = bvh.bounds();
         let (center, radius) = if bounds.is_empty() {
             (camera.position(), 1.0)
@@ -98,8 +102,7 @@ impl Scene {
         };
         let materials = description.materials.iter().map(|m| m.kind).collect();
         let is_caster = |shape: &FlatShape| traits[shape.material as usize].is_caster;
-        let casters = (0..).zip(&surfaces.shapes).filter(|(_, s)| is_caster(s)).map(|(i, _)| i);
-        let casters = Casters::new(casters, &surfaces);
+        let casters = Casters::new(&surfaces, &bvh, is_caster);
         let images = std::mem::take(&mut description.images);
         let mut scene = Self {
             camera,
@@ -219,6 +222,11 @@ impl Scene {
     /// What is known of a shape's material.
     pub(crate) fn traits(&self, shape: u32) -> Traits {
         self.traits[self.surfaces.shapes[shape as usize].material as usize]
+    }
+
+    /// What is known of a material.
+    pub(crate) fn traits_of(&self, material: MaterialId) -> Traits {
+        self.traits[material.0 as usize]
     }
 
     /// The textures.

@@ -6,7 +6,9 @@ use caustica_scene::description::{
     CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Texture, TextureTransform,
 };
 
-use crate::build::{add, diffuse, ellipsoid, emit, light, look, point_light, quad, scene, sphere};
+use crate::build::{
+    add, diffuse, ellipsoid, emit, group, instance, light, look, point_light, quad, scene, sphere,
+};
 
 /// Inside of a sphere of albedo ½ and emission ½: radiance 1 everywhere. The sphere's normals point out, so it is
 /// made of a mesh turned inside out; see [`inside_out`].
@@ -114,6 +116,41 @@ pub fn smooth_mesh(kind: MaterialKind) -> Description {
     let m = d.add_material(kind);
     let index = add(&mut d, "ellipsoid", Geometry::Mesh(ellipsoid(5, [0.6, 0.45, 0.5])), m);
     d.shapes[index].to_world = Transform::translate([0.0, -0.5, 0.0]);
+    d
+}
+
+/// The box with three instances of a glass egg on a tile beside a metal ball: turned, stretched and mirrored.
+pub fn instanced() -> Description {
+    let mut d = open_box();
+    let first = d.shapes.len();
+    let (glass, red) = (d.add_material(glass_kind(false)), diffuse(&mut d, 0.5));
+    let metal = d.add_material(metal_kind(Some(0.3)));
+    add(&mut d, "egg", Geometry::Mesh(ellipsoid(6, [0.3, 0.4, 0.3])), glass);
+    d.shapes[first].to_world = Transform::translate([0.0, 0.45, 0.0]);
+    quad(&mut d, [-0.4, 0.0, -0.4], [0.0, 0.0, 0.8], [0.8, 0.0, 0.0], red);
+    sphere(&mut d, [0.45, 0.2, 0.0], 0.15, metal);
+    let group = group(&mut d, first);
+    let turned = Transform::rotate(40.0, [0.0, 1.0, 0.2]);
+    for (change, to) in [
+        (turned.then(Transform::scale([0.9; 3])), [-0.45, -0.9, 0.2]),
+        (Transform::scale([0.7, 1.1, 0.8]).then(turned), [0.5, -0.95, -0.2]),
+        (Transform::scale([-0.6, 0.8, 0.5]), [0.1, 0.0, 0.5]),
+    ] {
+        instance(&mut d, group, change.then(Transform::translate(to)));
+    }
+    d
+}
+
+/// The same scene without groups: every instance has shapes of its own.
+pub fn flattened(mut d: Description) -> Description {
+    let groups = std::mem::take(&mut d.groups);
+    for i in std::mem::take(&mut d.instances) {
+        let shapes = groups[i.group.0 as usize].shapes.iter().cloned();
+        d.shapes.extend(shapes.map(|mut s| {
+            s.to_world = s.to_world.then(i.to_world);
+            s
+        }));
+    }
     d
 }
 

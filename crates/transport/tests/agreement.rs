@@ -109,6 +109,25 @@ fn environment_light() {
 }
 
 #[test]
+fn instances() {
+    check("instances", instanced(), 1500, &[Bdpt, Naive, Path]);
+    // Not stretched, as normals between corners are mixed before they are stretched in an instance, and after it in
+    // what has corners of its own.
+    let mut even = instanced();
+    even.instances.truncate(2);
+    let [turned, mirrored] = [&[0.8, 0.8, 0.8], &[-0.7, 0.7, 0.7]].map(|s| Transform::scale(*s));
+    even.instances[0].to_world = turned.then(Transform::translate([-0.4, -0.9, 0.0]));
+    even.instances[1].to_world =
+        mirrored.then(Transform::rotate(25.0, [0.2, 1.0, 0.0])).then(Transform::translate([0.4, -0.3, 0.2]));
+    let plan = Plan { passes: 1500, block: 4, only: None };
+    let estimates = [even.clone(), flattened(even)]
+        .map(flatten)
+        .each_ref()
+        .map(|scene| estimate(scene, &Bdpt.settings(u64::from(scene.surfaces().instances() > 0)), plan));
+    agree(&estimates[0], &estimates[1]).unwrap_or_else(|e| panic!("instances differ from shapes in {e}"));
+}
+
+#[test]
 fn delta_lights() {
     let white = Rgb::splat(3.0);
     let point = LightKind::Point { position: [0.3, 0.6, -0.2], intensity: white };

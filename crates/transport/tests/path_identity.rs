@@ -257,6 +257,12 @@ fn rough_materials() {
     verify("microfacet", ball(microfacet()));
 }
 
+/// Glass eggs, tiles and metal balls in three instances.
+#[test]
+fn instances() {
+    verify("instances", caustica_testkit::scenes::instanced());
+}
+
 #[test]
 fn shading_normals() {
     verify("diffuse egg", egg(room(), MaterialKind::Diffuse { albedo: Rgb([0.9, 0.7, 0.5]).into() }));

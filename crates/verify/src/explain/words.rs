@@ -32,12 +32,7 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
 /// What is called a shape in a sentence, with its material.
 pub fn shape_words(scene: &Scene, names: &[String], shape: u32) -> String {
     let name = names.get(shape as usize).map_or("?", String::as_str);
-    let flat = &scene.surfaces().shapes[shape as usize];
-    let primitive = flat.first_primitive;
-    let point = match scene.surfaces().sphere(primitive) {
-        Some(_) => scene.surfaces().sphere_point(primitive, caustica_math::Vec3::X),
-        None => scene.surfaces().triangle_point(primitive, 0.3, 0.3),
-    };
+    let point = scene.surfaces().some_point(shape);
     // Of a mixture one part, as good as any.
     let kind = match scene.placed(&point, point.normal, 0.0, caustica_math::Wavelengths::Rgb).bsdf {
         Bsdf::Dielectric(_) => "smooth glass",
@@ -93,7 +88,9 @@ fn shines_on_nothing(scene: &Scene, names: &[String], lamp: u32) -> String {
         Light::Area(_) => {
             "it faces away from everything. A lamp emits on the side of its normal: reverse its triangles, or turn it"
         }
-        Light::Spot(_) | Light::Projector(_) | Light::Collimated(_) => "it points away from everything: turn it",
+        Light::Spot(_) | Light::Projector(_) | Light::Collimated(_) => {
+            "it points away from everything: turn it"
+        }
         Light::Directional(_) => "it shines past everything: check its direction",
         Light::Point { .. } | Light::Environment(_) => "there is nothing that it could shine on",
     };
