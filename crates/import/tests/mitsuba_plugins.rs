@@ -5,7 +5,8 @@ mod common;
 use caustica_math::elementary::{atan2, tan};
 use caustica_math::{Filter, Rgb, Vec3};
 use caustica_scene::description::{
-    CameraKind, Crop, Geometry, Integrator, LightKind, MaterialKind, Technique, Texture,
+    CameraKind, Crop, Distribution, Geometry, Integrator, LightKind, MaterialKind, Roughness, Scalar,
+    Shadowing, Technique, Texture,
 };
 use caustica_scene::{Description, Scene};
 use common::{good, parse, refused, warned};
@@ -154,17 +155,18 @@ fn materials() {
     let grey = Rgb::splat(0.5);
     assert_eq!(material("<bsdf type='diffuse'/>"), MaterialKind::Diffuse { albedo: grey.into() });
     assert_eq!(material(""), MaterialKind::Diffuse { albedo: grey.into() });
-    let glass = MaterialKind::Dielectric { interior_ior: 1.5046, exterior_ior: 1.000_277 };
+    let glass = MaterialKind::dielectric(1.5046, 1.000_277);
     assert_eq!(material("<bsdf type='dielectric'/>"), glass);
     let named = "<bsdf type='dielectric'><string name='int_ior' value='Water'/><float name='ext_ior' value='1'/></bsdf>";
-    assert_eq!(material(named), MaterialKind::Dielectric { interior_ior: 1.333, exterior_ior: 1.0 });
+    assert_eq!(material(named), MaterialKind::dielectric(1.333, 1.0));
     let mirror = material("<bsdf type='conductor'/>");
     let MaterialKind::Conductor { eta, k, reflectance } = mirror else { panic!("{mirror:?}") };
-    assert_eq!((eta, k, reflectance), (Rgb::BLACK, Rgb::WHITE, Rgb::WHITE));
+    assert_eq!((eta, k, reflectance), (Rgb::BLACK, Rgb::WHITE, Rgb::WHITE.into()));
     let rough = "<bsdf type='roughconductor'><string name='material' value='Ni_palik'/><float name='alpha' value='.2'/>\
         <string name='distribution' value='ggx'/></bsdf>";
-    let MaterialKind::RoughConductor { alpha, eta, .. } = material(rough) else { panic!() };
-    assert!(alpha == 0.2 && eta.0[0] > 2.0);
+    let MaterialKind::RoughConductor { roughness, eta, .. } = material(rough) else { panic!() };
+    assert_eq!(roughness, Roughness { shadowing: Shadowing::Separable, ..Roughness::ggx(0.2) });
+    assert!(eta.0[0] > 2.0);
     let eta =
         "<bsdf type='conductor'><spectrum name='eta' value='0.789'/><rgb name='k' value='1 2 3'/></bsdf>";
     let MaterialKind::Conductor { eta, k, .. } = material(eta) else { panic!() };
@@ -172,14 +174,43 @@ fn materials() {
 }
 
 #[test]
+fn roughness_by_direction_and_texture() {
+    let rough = |inside: &str| {
+        let text = format!("<bsdf type='roughdielectric'>{inside}</bsdf>");
+        let MaterialKind::RoughDielectric { roughness, .. } = material(&text) else { panic!() };
+        roughness
+    };
+    let beckmann =
+        |alpha| Roughness { distribution: Distribution::Beckmann, shadowing: Shadowing::Separable, alpha };
+    assert_eq!(rough(""), beckmann([0.1.into(); 2]));
+    let both = "<float name='alpha_u' value='.2'/><float name='alpha_v' value='.4'/>";
+    assert_eq!(rough(both), beckmann([0.2.into(), 0.4.into()]));
+    let textured = rough("<texture name='alpha' type='checkerboard'/>");
+    assert!(matches!(textured.alpha, [Scalar::Texture(Texture::Checkerboard { .. }), Scalar::Texture(_)]));
+    let one = scene(
+        "<shape type='cube'>§<bsdf type='roughdielectric'><float name='alpha_u' value='.2'/></bsdf></shape>",
+    );
+    refused(&one, "both `alpha_u` and `alpha_v`");
+}
+
+#[test]
+fn factors_on_what_physics_says() {
+    let inside = "<rgb name='specular_reflectance' value='.1 .2 .3'/>\
+        <texture name='specular_transmittance' type='checkerboard'/>";
+    let glass = material(&format!("<bsdf type='dielectric'>{inside}</bsdf>"));
+    let MaterialKind::Dielectric { reflectance, transmittance, .. } = glass else { panic!() };
+    assert_eq!(reflectance, Rgb::new(0.1, 0.2, 0.3).into());
+    assert!(matches!(transmittance, Texture::Checkerboard { .. }));
+}
+
+#[test]
 fn what_is_not_supported_is_told() {
     let told =
         |bsdf: &str, message: &str| warned(&scene(&format!("<shape type='cube'>{bsdf}</shape>")), message);
     told(
-        "<bsdf type='roughdielectric'><string name='distribution' value='§beckmann'/></bsdf>",
-        "`ggx` is used",
+        "<bsdf type='roughdielectric'><string name='distribution' value='§phong'/></bsdf>",
+        "`beckmann` is used",
     );
-    told("<bsdf type='§roughdielectric'/>", "`ggx` is used");
     let plastic = "<bsdf type='§plastic'><rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='int_ior' value='2'/></bsdf>";
     let shown = told(plastic, "shown as diffuse of its colour").materials[0].kind;
     assert_eq!(shown, MaterialKind::Diffuse { albedo: Rgb::new(0.1, 0.2, 0.3).into() });

@@ -142,6 +142,10 @@ pub(crate) fn material_name(kind: &MaterialKind) -> &'static str {
         MaterialKind::Conductor { .. } => "conductor",
         MaterialKind::RoughConductor { .. } => "roughconductor",
         MaterialKind::Microfacet { .. } => "microfacet",
+        MaterialKind::Plastic { .. } => "plastic",
+        MaterialKind::RoughPlastic { .. } => "roughplastic",
+        MaterialKind::Principled(_) => "principled",
+        MaterialKind::PrincipledThin(_) => "principledthin",
     }
 }
 

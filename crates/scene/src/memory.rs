@@ -56,7 +56,7 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
 
 fn is_transparent(d: &Description, shape: &Shape) -> bool {
     let kind = d.materials.get(shape.material.0 as usize).map(|m| &m.kind);
-    matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. }))
+    kind.is_some_and(MaterialKind::refracts)
 }
 
 /// Refuses a scene that does not fit.

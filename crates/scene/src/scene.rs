@@ -5,13 +5,13 @@ use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, V
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, shears};
-use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
+use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
     SpotLight, Surroundings, power_through_disk,
 };
-use crate::material::bsdf_at;
+use crate::material::{FlatMaterial, bsdf_at, flatten};
 use crate::references;
 use crate::surface::{SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
@@ -26,7 +26,7 @@ pub struct Scene {
     pub film: FilmSettings,
     surfaces: Surfaces,
     bvh: Bvh,
-    materials: Vec<MaterialKind>,
+    materials: Vec<FlatMaterial>,
     images: Vec<Image>,
     lights: Lights,
     center: Vec3,
@@ -73,7 +73,7 @@ impl Scene {
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = &description.materials[shape.material.0 as usize].kind;
-            flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
+            flat.needs_uv = material.textures().into_iter().chain(&shape.emission).any(varies);
         }
         let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();
@@ -82,7 +82,7 @@ impl Scene {
         } else {
             (bounds.center(), ((bounds.max - bounds.center()).length() * 1.0001).max(f32::MIN_POSITIVE))
         };
-        let materials = description.materials.iter().map(|m| m.kind).collect();
+        let materials = flatten(&description.materials);
         let images = std::mem::take(&mut description.images);
         let mut scene = Self {
             camera,
@@ -347,18 +347,6 @@ impl Scene {
     /// Centre and radius of a sphere around all surfaces.
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
-    }
-}
-
-/// The texture that a material looks up, if it has one.
-pub(crate) fn texture_of(material: &MaterialKind) -> Option<&Texture> {
-    match material {
-        MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => Some(t),
-        MaterialKind::Mirror { .. }
-        | MaterialKind::Dielectric { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::RoughConductor { .. } => None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use caustica_math::{Rgb, Spectrum, Vec2, Wavelengths};
 
-use crate::description::{Image, Texture};
+use crate::description::{Image, Scalar, Texture};
 
 /// A colour that may vary over a surface, as the renderer evaluates it.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,15 @@ impl TextureTable<'_> {
                 let sum: f64 = pixels.iter().map(|p| f64::from(p.luminance())).sum();
                 (sum / pixels.len() as f64) as f32
             }
+        }
+    }
+
+    /// The number at `uv`.
+    #[inline]
+    pub fn number(&self, scalar: &Scalar, uv: Vec2) -> f32 {
+        match scalar {
+            Scalar::Constant(x) => *x,
+            Scalar::Texture(texture) => self.rgb(texture, uv).luminance(),
         }
     }
 

@@ -1,6 +1,6 @@
 //! What is merely suspicious about a scene.
 
-use crate::description::{Description, MaterialKind, Texture};
+use crate::description::{Description, MaterialKind, Principled, PrincipledThin, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::scene::Scene;
 
@@ -54,8 +54,7 @@ fn clipped(scene: &Scene, warnings: &mut Vec<Diagnostic>) {
 fn open_dielectrics(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
     let transparent = |index: &usize| {
         let material = description.shapes[*index].material;
-        let kind = &description.materials[material.0 as usize].kind;
-        matches!(kind, MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. })
+        description.materials[material.0 as usize].kind.refracts()
     };
     let shapes: Vec<usize> = (0..description.shapes.len()).filter(transparent).collect();
     for index in scene.surfaces().unclosed(&shapes) {
@@ -100,10 +99,21 @@ fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
             MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => {
                 ("a diffuse albedo", brightest(t))
             }
-            MaterialKind::Mirror { reflectance: c }
-            | MaterialKind::Conductor { reflectance: c, .. }
-            | MaterialKind::RoughConductor { reflectance: c, .. } => ("a reflectance", c.max_channel()),
-            MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => continue,
+            MaterialKind::Mirror { reflectance: c } => ("a reflectance", c.max_channel()),
+            MaterialKind::Conductor { reflectance: t, .. }
+            | MaterialKind::RoughConductor { reflectance: t, .. } => ("a reflectance", brightest(t)),
+            MaterialKind::Dielectric { reflectance, transmittance, .. }
+            | MaterialKind::RoughDielectric { reflectance, transmittance, .. } => {
+                ("a reflectance or transmittance", brightest(reflectance).max(brightest(transmittance)))
+            }
+            MaterialKind::Plastic { diffuse, reflectance, .. }
+            | MaterialKind::RoughPlastic { diffuse, reflectance, .. } => {
+                ("a reflectance", brightest(diffuse).max(brightest(reflectance)))
+            }
+            MaterialKind::Principled(Principled { base_color: t, .. })
+            | MaterialKind::PrincipledThin(PrincipledThin { base_color: t, .. }) => {
+                ("a base color", brightest(t))
+            }
         };
         if colour > 1.0 {
             let message = format!("{what} above one reflects more light than arrives");

@@ -19,7 +19,7 @@
 
 use caustica_math::{Spectrum, Vec2, Vec3, Wavelengths, warp};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::Bsdf;
+use caustica_scene::bsdf::{Bsdf, Plastic};
 use caustica_scene::camera::{CameraLink, CameraPoint};
 use caustica_scene::light::{Anchor, EmissionPdf, LightPoint};
 use caustica_scene::surface::SurfacePoint;
@@ -63,8 +63,8 @@ struct Node<'a> {
     normal: Option<Vector>,
     /// By how much rays start off it.
     offset: f32,
-    /// What scatters there; nothing at the two ends.
-    surface: Option<&'a Vertex>,
+    /// What scatters there, and whether by a Dirac lobe; nothing at the two ends.
+    surface: Option<(&'a Vertex, bool)>,
 }
 
 impl Node<'_> {
@@ -258,19 +258,20 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     if light.len() + eye.len() != s + t - 2 || light.len() != s.saturating_sub(1) {
         return Err(format!("{} light and {} eye vertices", light.len(), eye.len()));
     }
-    // A walk's last vertex is joined; it did not go on from there.
+    // A walk's last vertex is joined, by a smooth lobe, whichever way the walk went on from there.
     let scattered = light.iter().rev().skip(1).chain(eye.iter().rev().skip(s.min(1)));
-    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta()) {
+    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta() && !v.bsdf.is_mixed()) {
         return Err("a vertex's Dirac flag is wrong".into());
     }
-    let surface = |v: &'a Vertex| {
+    let surface = |v: &'a Vertex, joined: bool| {
         let SurfacePoint { position, normal, offset, .. } = v.point;
-        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), offset, surface: Some(v) }
+        let surface = Some((v, v.delta && !joined));
+        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), offset, surface }
     };
     let CameraPoint { at: eye_at, infinite: parallel } = c.path.camera;
     let mut nodes = vec![Node { at: wide(at), infinite, normal, offset, surface: None }];
-    nodes.extend(light.iter().map(surface));
-    nodes.extend(eye.iter().rev().map(surface));
+    nodes.extend(light.iter().enumerate().map(|(i, v)| surface(v, i + 1 == light.len())));
+    nodes.extend(eye.iter().rev().enumerate().map(|(i, v)| surface(v, i == 0 && s > 0)));
     nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, offset: 0.0, surface: None });
     Ok(nodes)
 }
@@ -280,8 +281,13 @@ fn to_local(v: &Vertex, d: Vector) -> Vector {
     [dot(d, wide(f.x)), dot(d, wide(f.y)), dot(d, wide(f.z))]
 }
 
-/// Scattering at `v` from the direction `to_light` into `to_camera`, which are known to within `blurs`.
-fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blurs: [f64; 2]) -> Result<Scattering, String> {
+/// Scattering at `v`, by a Dirac lobe or not, from the direction `to_light` into `to_camera`, which are known to within
+/// `blurs`.
+fn scatter(
+    (v, dirac): (&Vertex, bool),
+    [to_light, to_camera]: [Vector; 2],
+    blurs: [f64; 2],
+) -> Result<Scattering, String> {
     let (light, camera, normal) = (to_local(v, to_light), to_local(v, to_camera), wide(v.point.normal));
     let cos_g = dot(normal, to_light);
     if cos_g * light[2] <= 0.0 || dot(normal, to_camera) * camera[2] <= 0.0 {
@@ -294,8 +300,13 @@ fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blurs: [f64; 2]) -> R
             let lane = |i: usize| scale[i] * fresnel(light[2], eta[i], k[i]);
             mirror([0, 1, 2].map(lane), light, camera)
         }
-        Bsdf::Dielectric(b) => glass((b.interior_ior, b.exterior_ior), light, camera),
+        Bsdf::Dielectric(b) => glass((b.interior_ior, b.exterior_ior), light, camera).map(|mut s| {
+            let factor = if light[2] * camera[2] > 0.0 { b.reflectance } else { b.transmittance };
+            (0..3).for_each(|lane| s.value[lane] *= lanes(factor)[lane]);
+            s
+        }),
         Bsdf::RoughDielectric(b) if v.bsdf.is_delta() => glass(b.indices(), light, camera),
+        Bsdf::Plastic(b) if dirac => coat(b, light, camera),
         b => Ok(rough(b, light, camera, blurs[0] + blurs[1])),
     }?;
     // A refracted cosine follows from the other one, and Fresnel's equations from both.
@@ -329,6 +340,15 @@ fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scatteri
         return Err(format!("a mirror sends {light:?} to {camera:?}"));
     }
     Ok(Scattering::smooth(reflectance, 1.0, 1.0))
+}
+
+/// The Dirac lobe of plastic: Fresnel's reflectance, and the probability that it is chosen.
+fn coat(b: &Plastic, light: Vector, camera: Vector) -> Result<Scattering, String> {
+    let (fresnel, share) = (fresnel(light[2], b.eta().into(), 0.0), f64::from(b.coat_share()));
+    let mut s = mirror(lanes(b.specular()).map(|factor| factor * fresnel), light, camera)?;
+    let probability = fresnel * share / (fresnel * share + (1.0 - fresnel) * (1.0 - share));
+    (s.to_light_pdf, s.to_camera_pdf) = (probability, probability);
+    Ok(s)
 }
 
 /// The two Dirac lobes of a smooth interface.

@@ -65,13 +65,7 @@ impl PathClass {
     /// The class of a contribution's path.
     pub fn of(scene: &Scene, c: &Contribution<'_>) -> Self {
         let lamp = LampEnd::of(scene, &c.path.lamp);
-        let mut eye = c.path.eye;
-        if c.strategy.s == 0 && lamp == LampEnd::Surface {
-            // The last one is the lamp.
-            eye = &eye[..eye.len() - 1];
-        }
-        let vertices = c.path.light.iter().chain(eye.iter().rev());
-        Self::new(lamp, vertices.map(|v| v.is_connectible()))
+        Self::new(lamp, c.events().map(|(_, dirac)| !dirac))
     }
 
     /// What is at its lamp's end.

@@ -15,6 +15,7 @@ mod integrator;
 mod ior;
 mod parse;
 mod paths;
+mod roughness;
 mod scene;
 mod sensor;
 mod shape;

@@ -15,6 +15,8 @@ mod camera;
 mod integrator;
 mod light;
 mod material;
+mod principled;
+mod roughness;
 mod shape;
 
 use serde::{Deserialize, Serialize};
@@ -24,6 +26,8 @@ pub use caustica_math::Filter;
 pub use integrator::{Integrator, Technique};
 pub use light::{Light, LightKind};
 pub use material::{Image, ImageId, Material, MaterialId, MaterialKind, Texture, TextureTransform};
+pub use principled::{Principled, PrincipledThin};
+pub use roughness::{Distribution, Roughness, Scalar, Shadowing};
 pub use shape::{Geometry, Mesh, Shape};
 
 /// A whole scene.

@@ -215,8 +215,7 @@ impl Sink for Listener<'_, '_> {
         let carried = self.survey.classes.entry(class).or_default();
         carried.tally.add(luminance);
         *carried.lamps.entry(c.path.lamp.light).or_default() += luminance;
-        let vertices = c.path.light.iter().chain(c.path.eye.iter().rev());
-        let caster = vertices.filter(|v| !v.is_connectible()).map(|v| v.point.shape).next();
+        let caster = c.events().find(|(_, dirac)| *dirac).map(|(v, _)| v.point.shape);
         if let Some(shape) = caster {
             *carried.casters.entry(shape).or_default() += luminance;
         }
