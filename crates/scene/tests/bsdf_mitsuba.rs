@@ -238,7 +238,7 @@ fn principled() {
         roughness: 0.4,
         anisotropic: 0.6,
         metallic: 0.3,
-        eta: 1.620_038_6,
+        eta: 1.620_006_8,
         spec_tint: 0.4,
         sheen: 0.5,
         sheen_tint: 0.3,

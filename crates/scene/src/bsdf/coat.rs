@@ -2,8 +2,9 @@
 
 use caustica_math::Vec3;
 
-use super::facets::{Facets, reflected};
+use super::facets::Facets;
 use super::fresnel::fresnel_dielectric;
+use super::rough_dielectric::{deflected, upper};
 use crate::description::{Distribution, Shadowing};
 
 /// A smooth coat.
@@ -45,8 +46,7 @@ fn diffuse_reflectance(ior: f32, ior_beyond: f32) -> f32 {
 /// How many places the transmittance of a rough coat is kept for.
 pub(super) const NODES: usize = 8;
 
-/// A rough coat: isotropic, with separable shadowing. What it does not reflect counts as transmitted, the light
-/// that would meet a second microfacet included.
+/// A rough coat: isotropic, with separable shadowing. Light that would meet a second microfacet is lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughCoat {
     pub(super) eta: f32,
@@ -61,11 +61,11 @@ impl RoughCoat {
     /// A coat of roughness `alpha` and the index of refraction `eta` relative to the outside.
     pub fn new(distribution: Distribution, alpha: f32, eta: f32) -> Self {
         let facets = Facets::new(distribution, Shadowing::Separable, [alpha; 2]);
-        let passes = |mu: f32| 1.0 - directional_reflectance(&facets, mu.max(1e-6), (1.0, eta), 32);
+        let passes = |mu: f32| shares(&facets, mu.max(1e-6), (1.0, eta), 32).1;
         let last = (NODES - 1) as f32;
         let mut nodes: [f32; NODES] = std::array::from_fn(|i| passes((i as f32 / last).powi(2)));
         // At grazing angles a sharp lobe changes faster than the nodes tell. The first one is moved so that the curve
-        // is right in the middle of its interval, where it counts 9/16 − 1/16·3 of what it is.
+        // is right in the middle of its interval.
         let middle = passes((0.5 / last).powi(2));
         let missing = middle - curve(&nodes, (0.5 / last).powi(2));
         nodes[0] = (nodes[0] + missing / FIRST_AT_MIDDLE).clamp(0.0, 1.0);
@@ -102,21 +102,25 @@ fn curve(nodes: &[f32; NODES], mu: f32) -> f32 {
     b + 0.5 * f * (c - a + f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a)))
 }
 
-/// The share of light from the direction of cosine `mu` that such an interface reflects at once: ∫ F·G₁ over the
-/// visible normals, by the midpoint rule.
-fn directional_reflectance(facets: &Facets, mu: f32, (ior, ior_beyond): (f32, f32), steps: u32) -> f32 {
+/// The shares of light from the direction of cosine `mu` that such an interface reflects and transmits at once: ∫ F·G₁ and
+/// ∫ (1 − F)·G₁ over the visible normals, by the midpoint rule, with G₁ of the direction in which it leaves.
+fn shares(facets: &Facets, mu: f32, (ior, ior_beyond): (f32, f32), steps: u32) -> (f32, f32) {
     let v = Vec3::new(((1.0 - mu) * (1.0 + mu)).max(0.0).sqrt(), 0.0, mu);
     let middle = |i: u32| (i as f32 + 0.5) / steps as f32;
-    let mut sum = 0.0;
+    let unmasked = |out: Option<Vec3>| {
+        let masking = |out: Vec3| 2.0 * out.z * facets.masking_over_twice_cos(out);
+        out.map_or(0.0, |out| masking(upper(out)))
+    };
+    let (mut reflected, mut transmitted) = (0.0, 0.0);
     for i in 0..steps * steps {
         let h = facets.sample_visible(v, [middle(i / steps), middle(i % steps)]);
-        let (cos, out) = (v.dot(h), reflected(v, h));
-        if cos > 0.0 && out.z > 0.0 {
-            let masking = 2.0 * out.z * facets.masking_over_twice_cos(out);
-            sum += f64::from(fresnel_dielectric(cos.min(1.0), ior, ior_beyond).reflectance * masking);
-        }
+        let interface = fresnel_dielectric(v.dot(h).clamp(0.0, 1.0), ior, ior_beyond);
+        let out = |reflects| deflected(v, h, (interface, ior / ior_beyond), reflects);
+        reflected += f64::from(interface.reflectance * unmasked(out(true)));
+        transmitted += f64::from((1.0 - interface.reflectance) * unmasked(out(false)));
     }
-    (sum / f64::from(steps * steps)) as f32
+    let count = f64::from(steps * steps);
+    ((reflected / count) as f32, (transmitted / count) as f32)
 }
 
 /// What the coat reflects of diffuse light from below: the sum that Mitsuba takes for ∫ 2·R(μ)·μ dμ, the mean over 64
@@ -127,7 +131,7 @@ fn internal_reflectance(facets: &Facets, eta: f32) -> f32 {
     let sum: f64 = (0..VALUES)
         .map(|i| {
             let mu = (i as f32 / (VALUES - 1) as f32).max(1e-6);
-            f64::from(2.0 * mu * directional_reflectance(facets, mu, (eta, 1.0), 16))
+            f64::from(2.0 * mu * shares(facets, mu, (eta, 1.0), 16).0)
         })
         .sum();
     (sum / f64::from(VALUES)) as f32
@@ -147,7 +151,7 @@ mod tests {
         }
     }
 
-    /// The few nodes know the transmittance to half a percent, but at the most grazing angles.
+    /// The few nodes know the transmittance to 0.3 % in the mean.
     #[test]
     fn curves_follow_the_transmittance() {
         for distribution in [Distribution::Ggx, Distribution::Beckmann] {
@@ -157,12 +161,12 @@ mod tests {
                 let mut mean = 0.0;
                 for i in 0..60 {
                     let mu = 0.05 + 0.95 * i as f32 / 59.0;
-                    let exact = 1.0 - directional_reflectance(&facets, mu, (1.0, 1.5), 64);
+                    let exact = shares(&facets, mu, (1.0, 1.5), 64).1;
                     let error = (transmittance(&coat.transmittance, mu) / exact - 1.0).abs();
-                    assert!(error < 0.01, "{distribution:?} {alpha}: {error} at {mu}");
+                    assert!(error < 0.025, "{distribution:?} {alpha}: {error} at {mu}");
                     mean += error / 60.0;
                 }
-                assert!(mean < 0.0025, "{distribution:?} {alpha}: {mean} in the mean");
+                assert!(mean < 0.003, "{distribution:?} {alpha}: {mean} in the mean");
             }
         }
     }

@@ -79,7 +79,7 @@ impl Base {
         // Hanrahan and Krueger's subsurface scattering, approximately.
         let grazing = 0.5 * rr;
         let flat = mix(1.0, grazing, l) * mix(1.0, grazing, c);
-        let flat = 1.25 * (flat * (1.0 / (cos_light + cos_camera) - 0.5) + 0.5);
+        let flat = 1.25 * (flat * (1.0 / (cos_light + cos_camera).max(1e-30) - 0.5) + 0.5);
         let share = mix(diffuse + retro, flat, self.flatness) * (self.weight * FRAC_1_PI);
         let mut value = self.color * share;
         if self.sheen > 0.0 {
