@@ -5,8 +5,8 @@ mod common;
 use caustica_math::elementary::{atan2, tan};
 use caustica_math::{Filter, Rgb, Vec3};
 use caustica_scene::description::{
-    CameraKind, Crop, Distribution, Geometry, Integrator, LightKind, MaterialKind, Roughness, Scalar,
-    Shadowing, Technique, Texture,
+    CameraKind, Crop, Distribution, Geometry, Integrator, LightKind, MaterialKind, Principled,
+    PrincipledThin, Roughness, Scalar, Shadowing, Technique, Texture,
 };
 use caustica_scene::{Description, Scene};
 use common::{good, parse, refused, warned};
@@ -204,6 +204,55 @@ fn factors_on_what_physics_says() {
 }
 
 #[test]
+fn plastics() {
+    let (interior_ior, exterior_ior) = (1.49, 1.000_277);
+    let (diffuse, reflectance) = (Rgb::splat(0.5).into(), Rgb::WHITE.into());
+    let smooth = MaterialKind::Plastic { interior_ior, exterior_ior, diffuse, reflectance, nonlinear: false };
+    assert_eq!(material("<bsdf type='plastic'/>"), smooth);
+    let inside = "<rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='int_ior' value='1.9'/>\
+        <boolean name='nonlinear' value='true'/><float name='alpha' value='.2'/>\
+        <string name='distribution' value='ggx'/>";
+    let rough = material(&format!("<bsdf type='roughplastic'>{inside}</bsdf>"));
+    let expected = MaterialKind::RoughPlastic {
+        distribution: Distribution::Ggx,
+        alpha: 0.2,
+        interior_ior: 1.9,
+        exterior_ior,
+        diffuse: Rgb::new(0.1, 0.2, 0.3).into(),
+        reflectance,
+        nonlinear: true,
+    };
+    assert_eq!(rough, expected);
+}
+
+#[test]
+fn principled_materials() {
+    assert_eq!(material("<bsdf type='principled'/>"), MaterialKind::Principled(Principled::default()));
+    let inside = "<float name='roughness' value='.2'/><float name='eta' value='1.4'/>\
+        <texture name='metallic' type='checkerboard'/><float name='clearcoat_sampling_rate' value='2'/>";
+    let MaterialKind::Principled(p) = material(&format!("<bsdf type='principled'>{inside}</bsdf>")) else {
+        panic!()
+    };
+    assert_eq!((p.roughness, p.eta, p.sheen), (0.2.into(), 1.4, 0.0.into()));
+    assert!(matches!(p.metallic, Scalar::Texture(Texture::Checkerboard { .. })));
+    let glossy = "<bsdf type='principled'><float name='specular' value='.7'/></bsdf>";
+    let MaterialKind::Principled(p) = material(glossy) else { panic!() };
+    assert!((p.eta - 1.620_006_8).abs() < 1e-6);
+    let thin = "<bsdf type='principledthin'><float name='diff_trans' value='1.5'/></bsdf>";
+    let expected = PrincipledThin { diff_trans: 1.5.into(), ..PrincipledThin::default() };
+    assert_eq!(material(thin), MaterialKind::PrincipledThin(expected));
+    let bsdf = |inside: &str| scene(&format!("<shape type='cube'>{inside}</shape>"));
+    let both =
+        "§<bsdf type='principled'><float name='eta' value='1.4'/><float name='specular' value='.4'/></bsdf>";
+    refused(&bsdf(both), "either `eta` or `specular`");
+    refused(&bsdf("<bsdf type='principled'><float name='metallic' value='§2'/></bsdf>"), "metallic");
+    warned(
+        &bsdf("<bsdf type='principled'>§<float name='metalic' value='1'/></bsdf>"),
+        "did you mean `metallic`?",
+    );
+}
+
+#[test]
 fn what_is_not_supported_is_told() {
     let told =
         |bsdf: &str, message: &str| warned(&scene(&format!("<shape type='cube'>{bsdf}</shape>")), message);
@@ -211,8 +260,8 @@ fn what_is_not_supported_is_told() {
         "<bsdf type='roughdielectric'><string name='distribution' value='§phong'/></bsdf>",
         "`beckmann` is used",
     );
-    let plastic = "<bsdf type='§plastic'><rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='int_ior' value='2'/></bsdf>";
-    let shown = told(plastic, "shown as diffuse of its colour").materials[0].kind;
+    let phong = "<bsdf type='§phong'><rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='n' value='2'/></bsdf>";
+    let shown = told(phong, "shown as diffuse of its colour").materials[0].kind;
     assert_eq!(shown, MaterialKind::Diffuse { albedo: Rgb::new(0.1, 0.2, 0.3).into() });
     told("<bsdf type='§twosided'><bsdf type='diffuse'/></bsdf>", "its back is black");
     told("<bsdf type='§null'/>", "shown as diffuse grey");
@@ -220,7 +269,7 @@ fn what_is_not_supported_is_told() {
         "<bsdf type='§mask'><float name='opacity' value='.5'/><bsdf type='diffuse'/></bsdf>",
         "inside of it",
     );
-    told("<bsdf type='conductor'><string name='material' value='§TiO2'/></bsdf>", "no data of `TiO2`");
+    told("<bsdf type='conductor'><string name='material' value='§AlSb'/></bsdf>", "no data of `AlSb`");
     warned(&scene("<emitter type='§sunsky'/>"), "left out");
     warned(&scene("<shape type='§instance'/>"), "left out");
     warned(&scene("<shape type='§disk'/>"), "triangles");

@@ -74,6 +74,7 @@ impl Scene {
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
             let material = &description.materials[shape.material.0 as usize].kind;
             flat.needs_uv = material.textures().into_iter().chain(&shape.emission).any(varies);
+            flat.needs_tangents = material.is_oriented();
         }
         let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();

@@ -8,17 +8,23 @@ use super::class::Class;
 use super::context::Context;
 use super::fields::Fields;
 use super::spectrum::Role;
-use super::{ior, roughness, texture};
+use super::{ior, plastic, principled, roughness, texture};
 
-const BSDFS: &[&str] =
-    &["diffuse", "dielectric", "roughdielectric", "conductor", "roughconductor", "twosided"];
+const BSDFS: &[&str] = &[
+    "diffuse",
+    "dielectric",
+    "roughdielectric",
+    "conductor",
+    "roughconductor",
+    "plastic",
+    "roughplastic",
+    "principled",
+    "principledthin",
+    "twosided",
+];
 
 /// What has no material of its own yet, and the property whose colour it is shown in.
 const SHOWN_DIFFUSE: &[(&str, &str)] = &[
-    ("plastic", "diffuse_reflectance"),
-    ("roughplastic", "diffuse_reflectance"),
-    ("principled", "base_color"),
-    ("principledthin", "base_color"),
     ("pplastic", "diffuse_reflectance"),
     ("phong", "diffuse_reflectance"),
     ("ward", "diffuse_reflectance"),
@@ -83,7 +89,7 @@ fn inner(fields: &mut Fields, cx: &mut Context) -> Result<Option<MaterialId>, Di
 
 /// Whether both sides scatter.
 fn is_two_sided(kind: &MaterialKind) -> bool {
-    matches!(kind, MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. })
+    kind.refracts() || matches!(kind, MaterialKind::PrincipledThin(_))
 }
 
 fn kind(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnostic> {
@@ -120,6 +126,10 @@ fn kind(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnosti
             let reflectance = factor(fields, "specular_reflectance", cx)?;
             MaterialKind::RoughConductor { roughness, eta, k, reflectance }
         }
+        "plastic" => plastic::smooth(fields, cx)?,
+        "roughplastic" => plastic::rough(fields, cx)?,
+        "principled" => principled::solid(fields, cx)?,
+        "principledthin" => principled::thin(fields, cx)?,
         plugin => return shown_diffuse(plugin, fields, cx),
     })
 }

@@ -15,6 +15,8 @@ mod integrator;
 mod ior;
 mod parse;
 mod paths;
+mod plastic;
+mod principled;
 mod roughness;
 mod scene;
 mod sensor;

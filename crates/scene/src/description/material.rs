@@ -227,6 +227,19 @@ impl MaterialKind {
         }
     }
 
+    /// Whether it scatters differently when the surface is turned about its normal.
+    pub fn is_oriented(&self) -> bool {
+        let turned = |anisotropic: &Scalar| *anisotropic != Scalar::Constant(0.0);
+        match self {
+            Self::RoughDielectric { roughness, .. } | Self::RoughConductor { roughness, .. } => {
+                roughness.alpha[0] != roughness.alpha[1]
+            }
+            Self::Principled(p) => turned(&p.anisotropic),
+            Self::PrincipledThin(p) => turned(&p.anisotropic),
+            _ => false,
+        }
+    }
+
     /// All textures that the material looks up.
     pub fn textures(&self) -> Vec<&Texture> {
         let mut all = Vec::new();

@@ -75,6 +75,7 @@ impl Surfaces {
             first_primitive: self.triangles.len() as u32,
             primitive_count: 0,
             needs_uv: true,
+            needs_tangents: false,
             first_position: self.positions.len() as u32,
             first_normal: NONE,
             first_uv: NONE,
