@@ -67,7 +67,7 @@ const MORE: [(&str, [f32; 3], [f32; 3]); 22] = [
     ("d-C", [2.7087, 2.3188, 2.2289], [0.0, 0.0, 0.0]),
 ];
 
-/// Metals of which there is a table in Mitsuba that does not reach the visible light.
+/// What Mitsuba has a table of that ends within the visible light, and from which it makes no red at all.
 const OTHER_METALS: &[&str] = &["AlSb"];
 
 /// An index of refraction, by number or name.
@@ -105,7 +105,7 @@ pub(super) fn metal_index(fields: &mut Fields, cx: &mut Context) -> Result<(Rgb,
             match metal(short).or_else(|| more(short)) {
                 Some(metal) => metal,
                 None if OTHER_METALS.contains(&short) => {
-                    let message = format!("there is no data of `{name}` yet; shown as chromium");
+                    let message = format!("there is no data of `{name}`; shown as chromium");
                     fields.warn_at(message, &property.value_origin);
                     metal("Cr").ok_or_else(|| fields.missing("eta", "the color"))?
                 }

@@ -10,7 +10,7 @@ use super::{roughness, texture};
 use crate::nori::range::Bounds;
 
 /// Of a number that is a share.
-const SHARE: Bounds = Bounds::Between(0.0, 1.0);
+const SHARE: Bounds = Bounds::Within(0.0, 1.0);
 
 /// `principled`.
 pub(super) fn solid(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnostic> {
@@ -66,7 +66,7 @@ pub(super) fn thin(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind
         ("sheen", &mut p.sheen, Bounds::NotNegative),
         ("sheen_tint", &mut p.sheen_tint, SHARE),
         ("flatness", &mut p.flatness, SHARE),
-        ("diff_trans", &mut p.diff_trans, Bounds::Between(0.0, 2.0)),
+        ("diff_trans", &mut p.diff_trans, Bounds::Within(0.0, 2.0)),
     ] {
         set(fields, (name, bounds), value, cx)?;
     }

@@ -12,8 +12,8 @@ const FRAC_1_SQRT_PI: f32 = 0.564_189_6;
 pub(super) fn density([ax, ay]: [f32; 2], h: Vec3) -> f32 {
     let (x, y, cos2) = (h.x / ax, h.y / ay, h.z * h.z);
     let decay = exp(-(x * x + y * y) / cos2);
-    // Where it underflows, cos⁴ may do so too.
-    if decay > 0.0 { decay * FRAC_1_PI / (ax * ay * cos2 * cos2) } else { 0.0 }
+    // Far out, products would lose their digits; and where it underflows, cos⁴ may do so too. None is sampled there.
+    if decay > 1e-20 { decay * FRAC_1_PI / (ax * ay * cos2 * cos2) } else { 0.0 }
 }
 
 /// cos·(1 + 2Λ) with Λ = ½·(erf a − 1 + exp(−a²)/(a·√π)) and a = cos/(α·sin); `sin` is α·sin.

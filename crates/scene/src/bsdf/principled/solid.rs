@@ -201,7 +201,9 @@ impl Principled {
             choice -= opaque;
             if choice < 0.25 * self.clearcoat {
                 let h = ClearCoat::new(self.clearcoat_gloss).sample([u[0], u[1]]);
-                return (given.dot(h) > 0.0).then(|| reflected(given, h));
+                let v = reflected(given, h);
+                // What would go below is no part of the lobe.
+                return (given.dot(h) > 0.0 && v.z > 0.0).then_some(v);
             }
             choice -= 0.25 * self.clearcoat;
         }
