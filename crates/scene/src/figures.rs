@@ -2,7 +2,9 @@
 
 use caustica_math::{Filter, Rgb};
 
-use crate::description::{Description, FilmSettings, Material, MaterialKind, Roughness, Scalar, Texture};
+use crate::description::{
+    Description, FilmSettings, Material, MaterialKind, Roughness, Scalar, Texture, Wrapper,
+};
 use crate::diagnostic::Diagnostic;
 
 /// Indices of refraction and their ratios lie between one over this and this; roughnesses and the indices of metals
@@ -25,9 +27,13 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
 
 fn material(m: &Material) -> Result<(), Diagnostic> {
     let numbers = match m.kind {
-        MaterialKind::Diffuse { .. } => Ok(()),
+        MaterialKind::Wrapped(Wrapper::Bump { scale, .. }) if !scale.is_finite() => {
+            Err(Diagnostic::error("the scale of a bump map is not finite"))
+        }
+        MaterialKind::Diffuse { .. } | MaterialKind::Null | MaterialKind::Wrapped(_) => Ok(()),
         MaterialKind::Mirror { reflectance } => colour(reflectance),
-        MaterialKind::Dielectric { interior_ior, exterior_ior, .. } => iors(interior_ior, exterior_ior),
+        MaterialKind::Dielectric { interior_ior, exterior_ior, .. }
+        | MaterialKind::ThinDielectric { interior_ior, exterior_ior, .. } => iors(interior_ior, exterior_ior),
         MaterialKind::RoughDielectric { roughness, interior_ior, exterior_ior, .. } => {
             rough(&roughness).and_then(|()| iors(interior_ior, exterior_ior))
         }
@@ -113,15 +119,15 @@ fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic> {
     let finite = |pair: &[f32; 2]| pair.iter().all(|x| x.is_finite());
     let message = match texture {
         Texture::Constant(_) => return Ok(()),
-        Texture::Checkerboard { delta, scale, .. }
-            if finite(delta) && finite(scale) && !scale.contains(&0.0) =>
+        Texture::Checkerboard { delta, scale, shear, .. }
+            if finite(delta) && finite(scale) && finite(shear) && !scale.contains(&0.0) =>
         {
             return Ok(());
         }
         Texture::Checkerboard { .. } => {
             "has fields whose size is zero or not finite, or whose offset is not finite"
         }
-        Texture::Image { transform, .. } if finite(&transform.scale) && finite(&transform.offset) => {
+        Texture::Image { transform: t, .. } if [t.scale, t.shear, t.offset].iter().all(finite) => {
             return Ok(());
         }
         Texture::Image { .. } => "has a scale or an offset that is not finite",

@@ -17,7 +17,9 @@ mod references;
 pub mod scene;
 pub mod surface;
 pub mod texture;
+mod traits;
 mod warnings;
+pub mod wrapped;
 
 pub use caustica_math::MemoryLimit;
 pub use description::Description;

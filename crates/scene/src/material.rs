@@ -6,7 +6,7 @@ use caustica_math::{Rgb, Spectrum, Vec2, Wavelengths};
 
 use crate::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Facets, Microfacet, Plastic, PlasticColours, Principled,
-    PrincipledThin, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic, SmoothCoat,
+    PrincipledThin, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic, SmoothCoat, ThinDielectric,
 };
 use crate::description::{self, Distribution, Material, MaterialKind, Roughness, Scalar, Texture};
 use crate::texture::TextureTable;
@@ -117,7 +117,7 @@ impl Place<'_> {
     }
 }
 
-/// The material's BSDF at texture coordinates `uv`.
+/// The BSDF of a material that is no wrapper, at texture coordinates `uv`.
 #[inline(always)]
 pub fn bsdf_at(material: &FlatMaterial, textures: &TextureTable<'_>, uv: Vec2, w: Wavelengths) -> Bsdf {
     let at = Place { textures, uv, wavelengths: w };
@@ -157,5 +157,10 @@ pub fn bsdf_at(material: &FlatMaterial, textures: &TextureTable<'_>, uv: Vec2, w
         }
         MaterialKind::Principled(p) => Bsdf::Principled(at.principled(p)),
         MaterialKind::PrincipledThin(p) => Bsdf::PrincipledThin(at.principled_thin(p)),
+        MaterialKind::ThinDielectric { interior_ior, exterior_ior, reflectance, transmittance } => {
+            let [r, t] = [reflectance, transmittance].map(|texture| at.spectrum(texture));
+            Bsdf::ThinDielectric(ThinDielectric::new((*interior_ior, *exterior_ior), r, t))
+        }
+        MaterialKind::Null | MaterialKind::Wrapped(_) => Bsdf::Null,
     }
 }

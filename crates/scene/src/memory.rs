@@ -54,9 +54,10 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
     tables + more(TREE_WHILE_BUILT * primitives).max(more(TREE * primitives) + edges.max(lamps))
 }
 
+/// Whether a shape may be. (What wrappers hold is not looked at.)
 fn is_transparent(d: &Description, shape: &Shape) -> bool {
     let kind = d.materials.get(shape.material.0 as usize).map(|m| &m.kind);
-    kind.is_some_and(MaterialKind::refracts)
+    kind.is_some_and(|kind| kind.refracts() || matches!(kind, MaterialKind::Wrapped(_)))
 }
 
 /// Refuses a scene that does not fit.

@@ -15,6 +15,7 @@ use crate::material::{FlatMaterial, bsdf_at, flatten};
 use crate::references;
 use crate::surface::{SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
+use crate::traits::{self, Traits, varies};
 use crate::{figures, memory};
 
 /// A scene ready to be rendered. Immutable, and shared between threads.
@@ -27,6 +28,7 @@ pub struct Scene {
     surfaces: Surfaces,
     bvh: Bvh,
     materials: Vec<FlatMaterial>,
+    traits: Vec<Traits>,
     images: Vec<Image>,
     lights: Lights,
     center: Vec3,
@@ -69,12 +71,15 @@ impl Scene {
         memory::check(&description, tree, memory)?;
         references::check(&description)?;
         figures::check(&description)?;
+        let traits = traits::of_all(&description.materials)?;
         let camera = Camera::new(&description.camera, &film)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
-            let material = &description.materials[shape.material.0 as usize].kind;
-            flat.needs_uv = material.textures().into_iter().chain(&shape.emission).any(varies);
-            flat.needs_tangents = material.is_oriented();
+            let material = traits[shape.material.0 as usize];
+            flat.needs_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
+            flat.needs_tangents = material.is_oriented;
+            flat.is_wrapped = material.is_wrapped;
+            flat.is_mixed = material.is_mixed;
         }
         let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();
@@ -91,6 +96,7 @@ impl Scene {
             surfaces,
             bvh,
             materials,
+            traits,
             images,
             lights: Lights::new(Vec::new(), &[]),
             center,
@@ -209,7 +215,7 @@ impl Scene {
     fn surroundings(&self, wavelengths: Wavelengths) -> Surroundings<'_> {
         Surroundings {
             surfaces: &self.surfaces,
-            textures: TextureTable { images: &self.images },
+            textures: self.textures(),
             center: self.center,
             radius: self.radius,
             wavelengths,
@@ -241,12 +247,40 @@ impl Scene {
         !self.bvh.occluded(&Ray::between(from, to))
     }
 
-    /// The BSDF at a point.
+    /// The BSDF at a point; where [`Scene::is_wrapped`] says so, [`Scene::placed`] knows it.
     #[inline(always)]
     pub fn bsdf(&self, point: &SurfacePoint, wavelengths: Wavelengths) -> Bsdf {
         let material = self.surfaces.shapes[point.shape as usize].material;
-        let textures = TextureTable { images: &self.images };
-        bsdf_at(&self.materials[material as usize], &textures, point.uv, wavelengths)
+        bsdf_at(self.material(material), &self.textures(), point.uv, wavelengths)
+    }
+
+    /// Whether the material of a point is more than one BSDF in its place.
+    #[inline(always)]
+    pub fn is_wrapped(&self, point: &SurfacePoint) -> bool {
+        self.surfaces.shapes[point.shape as usize].is_wrapped
+    }
+
+    /// Whether chance decides what the material of a point is.
+    #[inline(always)]
+    pub fn is_mixed(&self, point: &SurfacePoint) -> bool {
+        self.surfaces.shapes[point.shape as usize].is_mixed
+    }
+
+    /// The material of that index.
+    #[inline(always)]
+    pub(crate) fn material(&self, index: u32) -> &FlatMaterial {
+        &self.materials[index as usize]
+    }
+
+    /// What is known of a shape's material.
+    pub(crate) fn traits(&self, shape: u32) -> Traits {
+        self.traits[self.surfaces.shapes[shape as usize].material as usize]
+    }
+
+    /// The textures.
+    #[inline(always)]
+    pub(crate) fn textures(&self) -> TextureTable<'_> {
+        TextureTable { images: &self.images }
     }
 
     /// The point as part of a lamp, if its shape is one.
@@ -268,8 +302,7 @@ impl Scene {
             probes.all(|(p, u)| {
                 let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(u));
                 let ray = Ray { origin: p.off_surface(d), direction: d, t_max: f32::INFINITY };
-                self.closest(&ray)
-                    .is_none_or(|q| q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits())
+                self.closest(&ray).is_none_or(|q| q.normal.dot(d) > 0.0 && !self.traits(q.shape).has_a_back)
             })
         })
     }
@@ -349,9 +382,4 @@ impl Scene {
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
-}
-
-/// Whether a texture depends on the texture coordinates.
-fn varies(texture: &Texture) -> bool {
-    !matches!(texture, Texture::Constant(_))
 }

@@ -31,6 +31,10 @@ pub struct FlatShape {
     /// Whether anything depends on which way the shading frame's x points. It follows ∂p/∂u then, and is arbitrary
     /// otherwise.
     pub needs_tangents: bool,
+    /// Whether its material is more than one BSDF in its place.
+    pub is_wrapped: bool,
+    /// Whether chance decides what its material is.
+    pub is_mixed: bool,
     first_position: u32,
     first_normal: u32,
     first_uv: u32,

@@ -52,10 +52,7 @@ fn clipped(scene: &Scene, warnings: &mut Vec<Diagnostic>) {
 
 /// A dielectric mesh that is not closed, alone or by others, refracts light into a medium that it never leaves.
 fn open_dielectrics(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
-    let transparent = |index: &usize| {
-        let material = description.shapes[*index].material;
-        description.materials[material.0 as usize].kind.refracts()
-    };
+    let transparent = |index: &usize| scene.traits(*index as u32).bounds_a_medium;
     let shapes: Vec<usize> = (0..description.shapes.len()).filter(transparent).collect();
     for index in scene.surfaces().unclosed(&shapes) {
         let shape = &description.shapes[index];
@@ -103,8 +100,9 @@ fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
             MaterialKind::Conductor { reflectance: t, .. }
             | MaterialKind::RoughConductor { reflectance: t, .. } => ("a reflectance", brightest(t)),
             MaterialKind::Dielectric { reflectance, transmittance, .. }
-            | MaterialKind::RoughDielectric { reflectance, transmittance, .. } => {
-                ("a reflectance or transmittance", brightest(reflectance).max(brightest(transmittance)))
+            | MaterialKind::RoughDielectric { reflectance, transmittance, .. }
+            | MaterialKind::ThinDielectric { reflectance, transmittance, .. } => {
+                ("a factor on what glass gives back", brightest(reflectance).max(brightest(transmittance)))
             }
             MaterialKind::Plastic { diffuse, reflectance, .. }
             | MaterialKind::RoughPlastic { diffuse, reflectance, .. } => {
@@ -114,6 +112,7 @@ fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
             | MaterialKind::PrincipledThin(PrincipledThin { base_color: t, .. }) => {
                 ("a base color", brightest(t))
             }
+            MaterialKind::Null | MaterialKind::Wrapped(_) => continue,
         };
         if colour > 1.0 {
             let message = format!("{what} above one reflects more light than arrives");

@@ -47,7 +47,7 @@ impl Case<'_> {
         for _ in 0..n {
             let bsdf = &self.example.bsdf;
             let s = bsdf.sample(self.walk, self.given, next_3d(&mut stream));
-            let Some(s) = s.filter(|s| s.delta || !bsdf.is_mixed()) else {
+            let Some(s) = s.filter(|s| s.delta || !bsdf.is_partly_delta()) else {
                 observed[2] += 1.0;
                 continue;
             };
@@ -58,7 +58,7 @@ impl Case<'_> {
             observed[lobe] += 1.0;
             told[lobe] = f64::from(s.pdf.get());
         }
-        if self.example.bsdf.is_mixed() {
+        if self.example.bsdf.is_partly_delta() {
             told[2] = 1.0 - told[0] - told[1];
         } else if (told[0] + told[1] - 1.0).abs() > 1e-6 {
             return Err(format!("{}: the lobes' probabilities are {told:?}", self.name()));
@@ -84,7 +84,7 @@ fn run<'a>(cases: &[Case<'a>], test: impl Fn(&Case<'a>) -> Result<f64, String>) 
 
 fn cases(examples: &[Example], delta: bool) -> Vec<Case<'_>> {
     let mut cases = vec![];
-    for example in examples.iter().filter(|e| e.bsdf.is_delta() == delta || e.bsdf.is_mixed()) {
+    for example in examples.iter().filter(|e| e.bsdf.is_delta() == delta || e.bsdf.is_partly_delta()) {
         for walk in WALKS {
             for given in given_directions(&example.bsdf) {
                 cases.push(Case { example, walk, given });

@@ -17,14 +17,17 @@
 //! Everything is computed from positions in `f64`, from the evaluation functions of BSDFs, lamps and cameras.
 //! No code is shared with the transport crate, nor with the smooth surfaces.
 
+mod scattering;
+
 use caustica_math::{Spectrum, Vec2, Vec3, Wavelengths, warp};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::{Bsdf, Plastic};
 use caustica_scene::camera::{CameraLink, CameraPoint};
 use caustica_scene::light::{Anchor, EmissionPdf, LightPoint};
 use caustica_scene::surface::SurfacePoint;
 use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Heuristic, Strategy, StrategySet};
+
+use scattering::{Scattering, scatter};
 
 type Vector = [f64; 3];
 
@@ -84,22 +87,6 @@ impl Node<'_> {
     /// |cos| to the geometric normal; one where there is none.
     fn cos(&self, direction: Vector) -> f64 {
         self.normal.map_or(1.0, |n| dot(n, direction).abs())
-    }
-}
-
-/// Scattering at a vertex: for a smooth surface coefficients of δ(to_light).
-struct Scattering {
-    /// f·|cos_s|/|cos_g| with the cosines on the light's side.
-    value: Vector,
-    to_light_pdf: f64,
-    to_camera_pdf: f64,
-    smooth: bool,
-    uncertainty: f64,
-}
-
-impl Scattering {
-    fn smooth(value: Vector, to_light_pdf: f64, to_camera_pdf: f64) -> Self {
-        Self { value, to_light_pdf, to_camera_pdf, smooth: true, uncertainty: 0.0 }
     }
 }
 
@@ -260,7 +247,7 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     }
     // A walk's last vertex is joined, by a smooth lobe, whichever way the walk went on from there.
     let scattered = light.iter().rev().skip(1).chain(eye.iter().rev().skip(s.min(1)));
-    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta() && !v.bsdf.is_mixed()) {
+    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta() && !v.bsdf.is_partly_delta()) {
         return Err("a vertex's Dirac flag is wrong".into());
     }
     let surface = |v: &'a Vertex, joined: bool| {
@@ -274,104 +261,6 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     nodes.extend(eye.iter().rev().enumerate().map(|(i, v)| surface(v, i == 0 && s > 0)));
     nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, offset: 0.0, surface: None });
     Ok(nodes)
-}
-
-fn to_local(v: &Vertex, d: Vector) -> Vector {
-    let f = v.point.frame;
-    [dot(d, wide(f.x)), dot(d, wide(f.y)), dot(d, wide(f.z))]
-}
-
-/// Scattering at `v`, by a Dirac lobe or not, from the direction `to_light` into `to_camera`, which are known to within
-/// `blurs`.
-fn scatter(
-    (v, dirac): (&Vertex, bool),
-    [to_light, to_camera]: [Vector; 2],
-    blurs: [f64; 2],
-) -> Result<Scattering, String> {
-    let (light, camera, normal) = (to_local(v, to_light), to_local(v, to_camera), wide(v.point.normal));
-    let cos_g = dot(normal, to_light);
-    if cos_g * light[2] <= 0.0 || dot(normal, to_camera) * camera[2] <= 0.0 {
-        return Err("a direction is on different sides of the two normals".into());
-    }
-    let mut s = match &v.bsdf {
-        Bsdf::Mirror { reflectance } => mirror(lanes(*reflectance), light, camera),
-        Bsdf::Conductor(b) => {
-            let [eta, k, scale] = [b.eta, b.k, b.reflectance].map(lanes);
-            let lane = |i: usize| scale[i] * fresnel(light[2], eta[i], k[i]);
-            mirror([0, 1, 2].map(lane), light, camera)
-        }
-        Bsdf::Dielectric(b) => glass((b.interior_ior, b.exterior_ior), light, camera).map(|mut s| {
-            let factor = if light[2] * camera[2] > 0.0 { b.reflectance } else { b.transmittance };
-            (0..3).for_each(|lane| s.value[lane] *= lanes(factor)[lane]);
-            s
-        }),
-        Bsdf::RoughDielectric(b) if v.bsdf.is_delta() => glass(b.indices(), light, camera),
-        Bsdf::Plastic(b) if dirac => coat(b, light, camera),
-        b => Ok(rough(b, light, camera, blurs[0] + blurs[1])),
-    }?;
-    // A refracted cosine follows from the other one, and Fresnel's equations from both.
-    let shares = [light[2], camera[2]].map(|cos| if s.smooth { cos * cos } else { cos.abs() });
-    s.uncertainty += blurs[0] / shares[0] + blurs[1] / shares[1];
-    s.value = s.value.map(|f| f / cos_g.abs());
-    Ok(s)
-}
-
-/// All that is not Dirac. How well it is known shows when a direction changes a little.
-fn rough(b: &Bsdf, light: Vector, camera: Vector, blur: f64) -> Scattering {
-    let eval = |x: f64, y: f64| {
-        let e = b.eval(narrow(light), narrow(plus(camera, [x, y, 0.0], blur)));
-        let [r, g, b] = lanes(e.value);
-        [r, g, b, e.to_light_pdf.get().into(), e.to_camera_pdf.get().into()]
-    };
-    let figures = eval(0.0, 0.0);
-    let changes = [eval(1.0, 1.0), eval(1.0, -1.0)]
-        .map(|other| (0..5).map(|i| (other[i] - figures[i]).abs() / figures[i].abs()).fold(0.0, f64::max));
-    let [r, g, b, to_light_pdf, to_camera_pdf] = figures;
-    let uncertainty = 2.0 * changes[0].max(changes[1]);
-    Scattering { value: [r, g, b], to_light_pdf, to_camera_pdf, smooth: false, uncertainty }
-}
-
-/// How far a smooth surface's directions may be off, by rounding.
-const SNELL: f64 = 1e-3;
-
-/// Mirroring keeps solid angles: all three coefficients are the reflectance or one.
-fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scattering, String> {
-    if distance(light, [-camera[0], -camera[1], camera[2]]) > SNELL || light[2] <= 0.0 {
-        return Err(format!("a mirror sends {light:?} to {camera:?}"));
-    }
-    Ok(Scattering::smooth(reflectance, 1.0, 1.0))
-}
-
-/// The Dirac lobe of plastic: Fresnel's reflectance, and the probability that it is chosen.
-fn coat(b: &Plastic, light: Vector, camera: Vector) -> Result<Scattering, String> {
-    let (fresnel, share) = (fresnel(light[2], b.eta().into(), 0.0), f64::from(b.coat_share()));
-    let mut s = mirror(lanes(b.specular()).map(|factor| factor * fresnel), light, camera)?;
-    let probability = fresnel * share / (fresnel * share + (1.0 - fresnel) * (1.0 - share));
-    (s.to_light_pdf, s.to_camera_pdf) = (probability, probability);
-    Ok(s)
-}
-
-/// The two Dirac lobes of a smooth interface.
-///
-/// Refracted radiance is T·(n_c/n_l)²·L, so that f·|cos| = T·(n_c/n_l)²·δ(to_light). The light walk refracts with
-/// density T·δ(to_camera), and n²·|cos|·dω is the same on both sides, so that
-/// δ(to_camera) = δ(to_light)·dω_l/dω_c = δ(to_light)·(n_c/n_l)²·|cos_c|/|cos_l|.
-fn glass((interior, exterior): (f32, f32), light: Vector, camera: Vector) -> Result<Scattering, String> {
-    let index = |v: Vector| f64::from(if v[2] > 0.0 { exterior } else { interior });
-    let (n_light, n_camera) = (index(light), index(camera));
-    let beyond = f64::from(exterior) + f64::from(interior) - n_light;
-    let reflectance = fresnel(light[2].abs(), beyond / n_light, 0.0);
-    if light[2] * camera[2] > 0.0 {
-        let upper = |v: Vector| [v[0], v[1], v[2].abs()];
-        mirror([reflectance; 3], upper(light), upper(camera))?;
-        return Ok(Scattering::smooth([reflectance; 3], reflectance, reflectance));
-    }
-    let tangent = |axis: usize| n_light * light[axis] + n_camera * camera[axis];
-    if tangent(0).hypot(tangent(1)) > SNELL {
-        return Err(format!("glass refracts {light:?} to {camera:?}"));
-    }
-    let (share, scale) = (1.0 - reflectance, (n_camera / n_light).powi(2));
-    Ok(Scattering::smooth([share * scale; 3], share, share * scale * (camera[2] / light[2]).abs()))
 }
 
 /// Film area in pixels per solid angle (or area) of the camera's rays to `seen`, from the camera's point on the
@@ -403,18 +292,4 @@ fn film_density(scene: &Scene, c: &Contribution<'_>, seen: &Node<'_>) -> Result<
         return Err(format!("seen at {:?} and not at {:?}", link.film, c.film));
     }
     Ok(link.pdf.get().into())
-}
-
-/// Fresnel's equations for unpolarised light, for an index `eta` + i·`k` relative to the medium around.
-fn fresnel(cos: f64, eta: f64, k: f64) -> f64 {
-    let square = [eta * eta - k * k, 2.0 * eta * k];
-    // w = √(index² − sin²), the refracted wave's cosine times its index.
-    let (re, im) = (square[0] - (1.0 - cos * cos), square[1]);
-    let modulus = re.hypot(im);
-    let w = [(0.5 * (modulus + re)).max(0.0).sqrt(), (0.5 * (modulus - re)).max(0.0).sqrt()];
-    let share = |a: [f64; 2]| {
-        let norm = |sign: f64| (a[0] + sign * w[0]).powi(2) + (a[1] + sign * w[1]).powi(2);
-        norm(-1.0) / norm(1.0)
-    };
-    0.5 * (share([cos, 0.0]) + share(square.map(|c| c * cos)))
 }

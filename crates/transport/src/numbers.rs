@@ -8,7 +8,8 @@
 use caustica_math::stream::GROUP;
 use caustica_math::{SampleId, SampleStream, Sampler};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::Bsdf;
+
+use crate::vertex::Vertex;
 
 // The slots of a group.
 const FILM: u64 = 0;
@@ -26,6 +27,8 @@ const POINT: u64 = 3;
 const CANDIDATES: u64 = 1 << 16;
 /// The first of those of the places on the lens that the points of a light path are joined with.
 const JOINED: u64 = 1 << 16;
+/// The first of those that decide what the vertices are.
+const LABELS: u64 = 1 << 17;
 
 /// The numbers of one bounce.
 pub(crate) struct Bounce {
@@ -68,13 +71,19 @@ pub(crate) trait Bounces {
         if needed { self.draw(group, slot) } else { [0.0; 2] }
     }
 
-    /// Those of the bounce at the surface vertex of that index (from 0), as far as the BSDF there and roulette need
-    /// them.
+    /// What the surface vertex of that index (from 0) is, where its material is a mixture. Both dimensions make one
+    /// number, so that enough of it is left for mixtures of mixtures.
+    fn label(&mut self, vertex: usize) -> f64 {
+        let [high, low] = self.draw(LABELS + vertex as u64, LOBE).map(f64::from);
+        high + low / f64::from(1 << 24)
+    }
+
+    /// Those of the bounce at the surface vertex of that index, as far as the BSDF there and roulette need them.
     #[inline]
-    fn bounce(&mut self, vertex: usize, bsdf: &Bsdf, roulette: bool) -> Bounce {
-        let group = Self::FIRST + vertex as u64;
-        let [u0, u1] = self.draw_if(!bsdf.is_delta(), group, BOUNCE);
-        let [u2, survival] = self.draw_if(roulette || bsdf.has_lobes(), group, LOBE);
+    fn bounce(&mut self, index: usize, vertex: &Vertex, roulette: bool) -> Bounce {
+        let group = Self::FIRST + index as u64;
+        let [u0, u1] = self.draw_if(!vertex.bsdf.is_delta(), group, BOUNCE);
+        let [u2, survival] = self.draw_if(roulette || vertex.has_lobes(), group, LOBE);
         Bounce { u: [u0, u1, u2], survival }
     }
 }

@@ -8,12 +8,13 @@ use std::collections::BTreeMap;
 
 use caustica_math::{Filter, Rgb, Transform, Vec2};
 use caustica_scene::description::{
-    CameraKind, Crop, Distribution, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind,
+    BumpRule, CameraKind, Crop, Distribution, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind,
     Principled, PrincipledThin, Roughness, Scalar, Shadowing, Texture, TextureTransform,
 };
 use caustica_scene::{Description, Scene};
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{add, ellipsoid, emit, glass, light, look, point_light, quad, scene, sphere};
+use caustica_testkit::materials::{bump, frosted, leaves, normal_map, thin_glass, two_sided};
 use caustica_testkit::oracle::{judge, lanes};
 use caustica_testkit::scenes::inside_out;
 use caustica_testkit::seed::seed;
@@ -333,6 +334,23 @@ fn plastics() {
     verify("plastic room", d);
 }
 
+/// A Dirac lobe beside a smooth one, on both sides and under bumps.
+#[test]
+fn plastics_within_others() {
+    let mut d = room();
+    let (linear, nonlinear) = (d.add_material(smooth_plastic(false)), d.add_material(smooth_plastic(true)));
+    let both = two_sided(&mut d, linear, nonlinear);
+    quad(&mut d, [-0.5, -0.8, 0.0], [0.8, 0.1, 0.0], [0.0, 0.9, 0.3], both);
+    verify("two-sided plastic", d);
+    for rule in [BumpRule { flips: true, shadows: true }, BumpRule { flips: false, shadows: false }] {
+        let bumpy = made(room(), |d| {
+            let plastic = d.add_material(smooth_plastic(true));
+            bump(d, 0.1, rule, plastic)
+        });
+        verify(&format!("bumps of plastic by {rule:?}"), bumpy);
+    }
+}
+
 #[test]
 fn principled_materials() {
     verify("principled", ball(principled()));
@@ -349,6 +367,61 @@ fn shading_normals() {
     verify("rough glass egg", egg(room(), rough_dielectric(1.5, 1.0)));
     verify("rough gold egg", egg(room(), gold(0.3)));
     verify("microfacet egg", egg(room(), microfacet()));
+}
+
+/// With an egg of a material that is made of others.
+fn made(mut d: Description, make: impl Fn(&mut Description) -> MaterialId) -> Description {
+    let m = make(&mut d);
+    let egg = add(&mut d, "egg", Geometry::Mesh(ellipsoid(6, [0.5, 0.35, 0.4])), m);
+    d.shapes[egg].to_world =
+        Transform::rotate(20.0, [1.0, 0.5, 0.0]).then(Transform::translate([0.05, -0.3, 0.2]));
+    d
+}
+
+#[test]
+fn labels() {
+    verify("mask", made(room(), leaves));
+    verify("blend", made(room(), frosted));
+    verify("nothing", made(room(), |d| d.add_material(MaterialKind::Null)));
+    verify("thin glass", made(room(), |d| d.add_material(thin_glass())));
+    // Seen from behind, a lamp too.
+    let mut d = room();
+    let (white, gold) = (coloured(&mut d, [0.8, 0.7, 0.6]), d.add_material(gold(0.3)));
+    let both = two_sided(&mut d, gold, white);
+    let screen = quad(&mut d, [-0.5, -0.8, 0.0], [0.8, 0.1, 0.0], [0.0, 0.9, 0.3], both);
+    verify("two-sided", d.clone());
+    emit(&mut d, screen, 2.0);
+    verify("two-sided lamp", d);
+}
+
+#[test]
+fn normals_of_their_own() {
+    let plain = BumpRule { flips: false, shadows: false };
+    let usual = BumpRule::default();
+    for (what, rule) in [("plain", plain), ("usual", usual)] {
+        let with = |kind: MaterialKind, scale: f32| {
+            made(room(), |d| {
+                let inner = d.add_material(kind);
+                bump(d, scale, rule, inner)
+            })
+        };
+        let clay = MaterialKind::Diffuse { albedo: Rgb([0.9, 0.7, 0.5]).into() };
+        verify(&format!("{what} bumps of clay"), with(clay, 0.2));
+        verify(&format!("{what} bumps of gold"), with(gold(0.3), 0.1));
+        verify(&format!("{what} bumps of rough glass"), with(rough_dielectric(1.5, 1.0), 0.1));
+        verify(
+            &format!("{what} bumps of a mirror"),
+            with(MaterialKind::Mirror { reflectance: Rgb::WHITE }, 0.1),
+        );
+        verify(&format!("{what} bumps of glass"), with(dielectric(1.5), 0.1));
+    }
+    let mapped = |d: &mut Description| {
+        let (front, back) = (d.add_material(microfacet()), coloured(d, [0.5, 0.6, 0.7]));
+        let front = normal_map(d, 0.8, BumpRule::default(), front);
+        let both = two_sided(d, front, back);
+        bump(d, 0.1, BumpRule::default(), both)
+    };
+    verify("a normal map on one side", made(room(), mapped));
 }
 
 /// An image without symmetries.
@@ -441,12 +514,17 @@ fn textured_and_many_lamps() {
     let mut d = closed();
     let shape = lamp(&mut d);
     let image = image(&mut d, 5, 3);
-    let transform = TextureTransform { scale: [1.5, 2.0], offset: [0.2, 0.1] };
+    let transform = TextureTransform { scale: [1.5, 2.0], offset: [0.2, 0.1], ..TextureTransform::default() };
     d.shapes[shape].emission = Some(Texture::Image { image, transform });
     verify("textured lamp", d.clone());
     let (value1, value2) = (Rgb([1.0, 2.0, 3.0]), Rgb([0.5, 0.1, 0.0]));
-    d.shapes[shape].emission =
-        Some(Texture::Checkerboard { delta: [0.1, 0.2], scale: [0.3, 0.4], value1, value2 });
+    d.shapes[shape].emission = Some(Texture::Checkerboard {
+        delta: [0.1, 0.2],
+        scale: [0.3, 0.4],
+        shear: [0.1, 0.0],
+        value1,
+        value2,
+    });
     verify("checkered lamp", d);
 
     let mut d = lit(&[sky, sun, spot]);

@@ -5,6 +5,7 @@
 //! where `to_camera` points, whichever walk asks.
 
 mod beckmann;
+pub mod bump;
 pub mod coat;
 pub mod conductor;
 pub mod diffuse;
@@ -17,9 +18,11 @@ pub mod plastic;
 pub mod principled;
 pub mod rough_dielectric;
 pub mod specular;
+pub mod thin;
 
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3};
 
+pub use bump::Bump;
 pub use coat::{RoughCoat, SmoothCoat};
 pub use conductor::{Conductor, RoughConductor};
 pub use diffuse::Diffuse;
@@ -29,8 +32,10 @@ pub use plastic::{Plastic, PlasticColours, RoughPlastic};
 pub use principled::{Principled, PrincipledThin};
 pub use rough_dielectric::RoughDielectric;
 pub use specular::Dielectric;
+pub use thin::ThinDielectric;
 
 use specular::sample_mirror;
+use thin::sample_null;
 
 /// The direction in which a path is being traced. (Light itself always travels to the camera.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,6 +106,10 @@ pub enum Bsdf {
     Principled(Principled),
     /// The same of something thin.
     PrincipledThin(PrincipledThin),
+    /// A thin sheet of glass.
+    ThinDielectric(ThinDielectric),
+    /// No surface at all.
+    Null,
 }
 
 // One lies in every path vertex: a cache line and no more.
@@ -119,7 +128,11 @@ impl Bsdf {
             Self::RoughPlastic(b) => b.eval(to_light, to_camera),
             Self::Principled(b) => b.eval(to_light, to_camera),
             Self::PrincipledThin(b) => b.eval(to_light, to_camera),
-            Self::Mirror { .. } | Self::Dielectric(_) | Self::Conductor(_) => Evaluated::default(),
+            Self::Mirror { .. }
+            | Self::Dielectric(_)
+            | Self::Conductor(_)
+            | Self::ThinDielectric(_)
+            | Self::Null => Evaluated::default(),
         }
     }
 
@@ -133,6 +146,8 @@ impl Bsdf {
             Self::Mirror { reflectance } => return lit(sample_mirror(*reflectance, given)?),
             Self::Conductor(b) => return lit(b.sample(given)?),
             Self::Dielectric(b) => return lit(b.sample(walk, given, u)?),
+            Self::ThinDielectric(b) => return lit(b.sample(given, u)?),
+            Self::Null => return Some(sample_null(given)),
             Self::RoughDielectric(b) if b.is_matched() => return lit(b.sample_matched(walk, given, u)?),
             Self::Diffuse(b) => b.sample_direction(given, u),
             Self::RoughDielectric(b) => b.sample_direction(given, u),
@@ -168,7 +183,11 @@ impl Bsdf {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Mirror { .. } | Self::Dielectric(_) | Self::Conductor(_) => true,
+            Self::Mirror { .. }
+            | Self::Dielectric(_)
+            | Self::Conductor(_)
+            | Self::ThinDielectric(_)
+            | Self::Null => true,
             Self::RoughDielectric(b) => b.is_matched(),
             Self::Diffuse(_)
             | Self::RoughConductor(_)
@@ -182,7 +201,7 @@ impl Bsdf {
 
     /// Whether it has Dirac lobes beside smooth ones: a walk that went on from there may have done so by either.
     #[inline]
-    pub fn is_mixed(&self) -> bool {
+    pub fn is_partly_delta(&self) -> bool {
         matches!(self, Self::Plastic(_))
     }
 
@@ -193,11 +212,16 @@ impl Bsdf {
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
             | Self::Microfacet(_)
+            | Self::ThinDielectric(_)
             | Self::Plastic(_)
             | Self::RoughPlastic(_)
             | Self::Principled(_)
             | Self::PrincipledThin(_) => true,
-            Self::Diffuse(_) | Self::Mirror { .. } | Self::Conductor(_) | Self::RoughConductor(_) => false,
+            Self::Diffuse(_)
+            | Self::Mirror { .. }
+            | Self::Conductor(_)
+            | Self::RoughConductor(_)
+            | Self::Null => false,
         }
     }
 
@@ -218,11 +242,17 @@ impl Bsdf {
         ratio * ratio
     }
 
+    /// Whether it has an inside, which is another medium than what is around.
+    #[inline]
+    pub fn bounds_a_medium(&self) -> bool {
+        matches!(self, Self::Dielectric(_) | Self::RoughDielectric(_))
+    }
+
     /// Whether light can pass from one side to the other.
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
-            Self::Dielectric(_) | Self::RoughDielectric(_) => true,
+            Self::Dielectric(_) | Self::RoughDielectric(_) | Self::ThinDielectric(_) | Self::Null => true,
             Self::Principled(b) => b.transmits(),
             Self::PrincipledThin(b) => b.transmits(),
             Self::Diffuse(_)

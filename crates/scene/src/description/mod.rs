@@ -18,6 +18,7 @@ mod material;
 mod principled;
 mod roughness;
 mod shape;
+mod wrapper;
 
 use serde::{Deserialize, Serialize};
 
@@ -25,10 +26,13 @@ pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
 pub use integrator::{Integrator, Technique};
 pub use light::{Light, LightKind};
-pub use material::{Image, ImageId, Material, MaterialId, MaterialKind, Texture, TextureTransform};
+pub use material::{
+    Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,
+};
 pub use principled::{Principled, PrincipledThin};
 pub use roughness::{Distribution, Roughness, Scalar, Shadowing};
 pub use shape::{Geometry, Mesh, Shape};
+pub use wrapper::{BumpRule, Wrapper};
 
 /// A whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -76,6 +76,8 @@ impl Surfaces {
             primitive_count: 0,
             needs_uv: true,
             needs_tangents: false,
+            is_wrapped: false,
+            is_mixed: false,
             first_position: self.positions.len() as u32,
             first_normal: NONE,
             first_uv: NONE,

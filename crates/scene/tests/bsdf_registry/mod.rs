@@ -6,7 +6,8 @@
 use caustica_math::{Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 use caustica_scene::bsdf::{
     Bsdf, Conductor, Dielectric, Diffuse, Facets, Microfacet, Plastic, PlasticColours, Principled,
-    PrincipledThin, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic, SmoothCoat, Walk, metals,
+    PrincipledThin, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic, SmoothCoat, ThinDielectric,
+    Walk, metals,
 };
 use caustica_scene::description::{Distribution, Shadowing};
 use caustica_testkit::seed::seed;
@@ -102,7 +103,14 @@ fn examples_after(previous: Option<&Bsdf>) -> Vec<Example> {
         .into(),
         Some(Bsdf::RoughPlastic(_)) => principled_examples(),
         Some(Bsdf::Principled(_)) => thin_examples(),
-        Some(Bsdf::PrincipledThin(_)) => vec![],
+        Some(Bsdf::PrincipledThin(_)) => glass()
+            .map(|indices| {
+                let bsdf = ThinDielectric::new(indices, Spectrum::ONE, Spectrum::ONE);
+                opaque(&format!("thin glass {indices:?}"), Bsdf::ThinDielectric(bsdf))
+            })
+            .collect(),
+        Some(Bsdf::ThinDielectric(_)) => vec![opaque("null", Bsdf::Null)],
+        Some(Bsdf::Null) => vec![],
     }
 }
 
