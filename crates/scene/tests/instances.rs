@@ -45,7 +45,7 @@ fn hits_are_those_of_the_flattened_scene() {
     d.groups[0].shapes.truncate(2);
     // Texture coordinates are looked at where there is a texture.
     let (value1, value2) = (Rgb::splat(0.2), Rgb::splat(0.8));
-    let albedo = Texture::Checkerboard { delta: [0.0; 2], scale: [0.3; 2], value1, value2 };
+    let albedo = Texture::Checkerboard { delta: [0.0; 2], scale: [0.3; 2], shear: [0.0; 2], value1, value2 };
     d.materials.iter_mut().for_each(|m| m.kind = MaterialKind::Diffuse { albedo });
     let kinds = d.groups[0].shapes.len();
     let own = d.shapes.len();

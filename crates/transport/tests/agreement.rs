@@ -171,7 +171,8 @@ fn many_lamps() {
 fn pictures_and_beams() {
     let to_world = Transform::look_at([0.5, 0.7, -0.5], [0.1, -0.3, 0.0], [0.0, 0.0, 1.0]);
     let (value1, value2) = (Rgb([9.0, 3.0, 1.0]), Rgb::splat(0.5));
-    let checks = Texture::Checkerboard { delta: [0.1, 0.2], scale: [0.3, 0.4], value1, value2 };
+    let checks =
+        Texture::Checkerboard { delta: [0.1, 0.2], scale: [0.3, 0.4], shear: [0.0; 2], value1, value2 };
     let projector = LightKind::Projector { to_world, irradiance: checks, scale: 1.0, fov: 70.0, aspect: 1.3 };
     check("projector", lit_by(projector), 400, &[Bdpt, Path, Light, ODD]);
     let intensity = Rgb::splat(3.0);

@@ -112,7 +112,7 @@ fn projectors() -> Vec<Example> {
     let on_picture = Texture::Image { image: ImageId(0), transform: TextureTransform::default() };
     let placed = Texture::Image {
         image: ImageId(0),
-        transform: TextureTransform { scale: [1.5, 2.0], offset: [0.2, 0.1] },
+        transform: TextureTransform { scale: [1.5, 2.0], offset: [0.2, 0.1], ..TextureTransform::default() },
     };
     // Across the axis at a distance, the irradiance is the picture's over its square.
     let on_axis = view([1.5, 2.5, 7.0], [1.0, 2.0, 3.0], 2.0 * luminance() / 16.5);
