@@ -407,6 +407,11 @@ pub struct Sampling {
     /// How samples are chosen
     #[arg(long, value_enum, default_value_t = SamplerChoice::Sobol)]
     pub sampler: SamplerChoice,
+    /// Rays of bdpt that are aimed at mirrors and glass from each point from where nothing else makes a path, to find
+    /// the light behind them
+    #[arg(long, value_name = "N", default_value_t = Settings::default().aimed_rays,
+        value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MOST_AIMED_RAYS)))]
+    pub aimed_rays: u32,
     /// How the strategies of bdpt are weighed
     #[arg(long, value_enum, default_value_t = HeuristicChoice::Balance)]
     pub heuristic: HeuristicChoice,
@@ -432,6 +437,7 @@ impl Sampling {
             seed: self.seed,
             sampler: self.sampler.into(),
             heuristic: self.heuristic.into(),
+            aimed_rays: self.aimed_rays,
             ..Settings::default()
         }
     }
@@ -444,6 +450,7 @@ impl Sampling {
         [
             ("max depth", depth),
             ("roulette depth", roulette),
+            ("aimed rays", self.aimed_rays.to_string()),
             ("seed", self.seed.to_string()),
             ("sampler", self.sampler.to_possible_value().map(name).unwrap_or_default()),
             ("heuristic", self.heuristic.to_possible_value().map(name).unwrap_or_default()),

@@ -179,12 +179,8 @@ fn what_is_not_supported_is_told() {
     let plastic = "<bsdf type='§plastic'><rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='int_ior' value='2'/></bsdf>";
     let shown = told(plastic, "shown as diffuse of its colour").materials[0].kind;
     assert_eq!(shown, MaterialKind::Diffuse { albedo: Rgb::new(0.1, 0.2, 0.3).into() });
-    told("<bsdf type='§twosided'><bsdf type='diffuse'/></bsdf>", "its back is black");
-    told("<bsdf type='§null'/>", "shown as diffuse grey");
-    told(
-        "<bsdf type='§mask'><float name='opacity' value='.5'/><bsdf type='diffuse'/></bsdf>",
-        "inside of it",
-    );
+    told("<bsdf type='§bumpmap'><texture type='checkerboard'/><bsdf type='diffuse'/></bsdf>", "it is flat");
+    told("<bsdf type='§coating'><bsdf type='diffuse'/></bsdf>", "inside of it");
     told("<bsdf type='conductor'><string name='material' value='§TiO2'/></bsdf>", "no data of `TiO2`");
     warned(&scene("<emitter type='§sunsky'/>"), "left out");
     warned(&scene("<shape type='§instance'/>"), "left out");

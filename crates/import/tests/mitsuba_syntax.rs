@@ -270,7 +270,8 @@ fn environments_and_bitmaps() {
     let MaterialKind::Diffuse { albedo: Texture::Image { transform, .. } } = d.materials[0].kind else {
         panic!()
     };
-    assert_eq!(transform, TextureTransform { scale: [3.0, 2.0], offset: [0.0, -1.25] });
+    let (scale, offset) = ([3.0, 2.0], [0.0, -1.25]);
+    assert_eq!(transform, TextureTransform { scale, offset, ..TextureTransform::default() });
     // Its bright pixel is the first of four: by Mitsuba's formula u = atan2(x, −z)/2π, an eighth of a turn from −z to +x.
     let scene = caustica_scene::Scene::new(d).unwrap().0;
     let seen = |x: f32, z: f32| {

@@ -158,12 +158,18 @@ fn textures() {
     let text = "<texture type='constant_color' name='albedo'><color name='value' value='1 0 0'/></texture>";
     assert_eq!(albedo(text), Texture::Constant(Rgb::new(1.0, 0.0, 0.0)));
     let (value1, value2) = (Rgb::BLACK, Rgb::WHITE);
-    let checkerboard = Texture::Checkerboard { delta: [0.0; 2], scale: [1.0; 2], value1, value2 };
+    let checkerboard =
+        Texture::Checkerboard { delta: [0.0; 2], scale: [1.0; 2], shear: [0.0; 2], value1, value2 };
     assert_eq!(albedo("<texture type='checkerboard_color'/>"), checkerboard);
     let text = "<texture type='checkerboard_color' name='albedo'><point name='delta' value='.5, 1'/>\
         <vector name='scale' value='.1 .2'/><color name='value1' value='1 1 1'/></texture>";
-    let checkerboard =
-        Texture::Checkerboard { delta: [0.5, 1.0], scale: [0.1, 0.2], value1: Rgb::WHITE, value2 };
+    let checkerboard = Texture::Checkerboard {
+        delta: [0.5, 1.0],
+        scale: [0.1, 0.2],
+        shear: [0.0; 2],
+        value1: Rgb::WHITE,
+        value2,
+    };
     assert_eq!(albedo(text), checkerboard);
 }
 

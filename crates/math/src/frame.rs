@@ -29,6 +29,20 @@ impl Frame {
         }
     }
 
+    /// The frame around the unit vector `z` whose x follows `tangent`, of any length, as far as a direction across `z`
+    /// can. `None` where the tangent is zero, not finite, or so nearly along `z` that rounding would decide.
+    #[inline]
+    pub fn with_tangent(z: Vec3, tangent: Vec3) -> Option<Self> {
+        let tangent = tangent.try_normalized()?;
+        let x = tangent - z * z.dot(tangent);
+        let squared = x.length_squared();
+        if squared <= 1e-6 {
+            return None;
+        }
+        let x = x * (1.0 / squared.sqrt());
+        Some(Self { x, y: z.cross(x), z })
+    }
+
     /// World to local coordinates.
     #[inline]
     pub fn to_local(&self, v: Vec3) -> Vec3 {
@@ -48,6 +62,14 @@ mod tests {
     use crate::warp;
     use proptest::prelude::*;
 
+    #[test]
+    fn tangents_that_lead_nowhere_make_no_frame() {
+        for tangent in [Vec3::ZERO, Vec3::Z * -3.0, Vec3::new(f32::NAN, 1.0, 0.0), Vec3::new(1e-4, 0.0, 1.0)]
+        {
+            assert_eq!(Frame::with_tangent(Vec3::Z, tangent), None, "{tangent:?}");
+        }
+    }
+
     proptest! {
         #[test]
         fn frames_are_orthonormal_and_right_handed(u in 0.0f32..1.0, v in 0.0f32..1.0) {
@@ -56,6 +78,18 @@ mod tests {
             prop_assert!((f.x.cross(f.y) - f.z).length() < 1e-5);
             let w = Vec3::new(0.3, -0.4, 0.8);
             prop_assert!((f.to_world(f.to_local(w)) - w).length() < 1e-5);
+        }
+
+        #[test]
+        fn tangents_lead_the_first_axis(u in 0.0f32..1.0, v in 0.0f32..1.0, s in 0.0f32..1.0, t in 0.0f32..1.0) {
+            let (z, tangent) = (warp::uniform_sphere([u, v]), warp::uniform_sphere([s, t]) * 1e-3);
+            let Some(f) = Frame::with_tangent(z, tangent) else {
+                prop_assert!(z.cross(tangent).length() < 2e-6);
+                return Ok(());
+            };
+            prop_assert!(f.x.dot(f.z).abs() < 2e-4 && (f.x.length() - 1.0).abs() < 1e-5);
+            prop_assert!((f.x.cross(f.y) - f.z).length() < 2e-4);
+            prop_assert!(f.y.dot(tangent).abs() < 1e-6 && f.x.dot(tangent) > 0.0);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What was loaded.
 
 use caustica_scene::Scene;
-use caustica_scene::description::{CameraKind, Description, Geometry, LightKind, MaterialKind};
+use caustica_scene::description::{CameraKind, Description, Geometry, LightKind, MaterialKind, Wrapper};
 use serde::Serialize;
 
 use crate::names::integrator_name;
@@ -144,6 +144,13 @@ pub(crate) fn material_name(kind: &MaterialKind) -> &'static str {
         MaterialKind::Conductor { .. } => "conductor",
         MaterialKind::RoughConductor { .. } => "roughconductor",
         MaterialKind::Microfacet { .. } => "microfacet",
+        MaterialKind::ThinDielectric { .. } => "thindielectric",
+        MaterialKind::Null => "null",
+        MaterialKind::Wrapped(Wrapper::Mask { .. }) => "mask",
+        MaterialKind::Wrapped(Wrapper::Blend { .. }) => "blendbsdf",
+        MaterialKind::Wrapped(Wrapper::TwoSided { .. }) => "twosided",
+        MaterialKind::Wrapped(Wrapper::Bump { .. }) => "bumpmap",
+        MaterialKind::Wrapped(Wrapper::NormalMap { .. }) => "normalmap",
     }
 }
 

@@ -2,9 +2,8 @@
 
 use caustica_math::{Filter, Rgb};
 
-use crate::description::{Description, FilmSettings, Material, MaterialKind, Texture};
+use crate::description::{Description, FilmSettings, Material, MaterialKind, Texture, Wrapper};
 use crate::diagnostic::Diagnostic;
-use crate::scene::texture_of;
 
 /// Indices of refraction and their ratios lie between one over this and this; roughnesses and the indices of metals
 /// between 0 and this. Their fourth powers are still far from the ends of `f32`.
@@ -26,9 +25,13 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
 
 fn material(m: &Material) -> Result<(), Diagnostic> {
     let numbers = match m.kind {
-        MaterialKind::Diffuse { .. } => Ok(()),
+        MaterialKind::Wrapped(Wrapper::Bump { scale, .. }) if !scale.is_finite() => {
+            Err(Diagnostic::error("the scale of a bump map is not finite"))
+        }
+        MaterialKind::Diffuse { .. } | MaterialKind::Null | MaterialKind::Wrapped(_) => Ok(()),
         MaterialKind::Mirror { reflectance } => colour(reflectance),
-        MaterialKind::Dielectric { interior_ior, exterior_ior } => iors(interior_ior, exterior_ior),
+        MaterialKind::Dielectric { interior_ior, exterior_ior }
+        | MaterialKind::ThinDielectric { interior_ior, exterior_ior, .. } => iors(interior_ior, exterior_ior),
         MaterialKind::RoughDielectric { alpha, interior_ior, exterior_ior }
         | MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, .. } => {
             roughness(alpha).and_then(|()| iors(interior_ior, exterior_ior))
@@ -38,8 +41,8 @@ fn material(m: &Material) -> Result<(), Diagnostic> {
             roughness(alpha).and_then(|()| metal(eta, k, reflectance))
         }
     };
-    let texture = texture_of(&m.kind).map_or(Ok(()), |t| placement(t, "a material's texture"));
-    numbers.and(texture).map_err(|e| e.at(m.origin.clone()))
+    let textures = m.kind.textures().into_iter().try_for_each(|t| placement(t, "a material's texture"));
+    numbers.and(textures).map_err(|e| e.at(m.origin.clone()))
 }
 
 fn colour(c: Rgb) -> Result<(), Diagnostic> {
@@ -82,15 +85,15 @@ fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic> {
     let finite = |pair: &[f32; 2]| pair.iter().all(|x| x.is_finite());
     let message = match texture {
         Texture::Constant(_) => return Ok(()),
-        Texture::Checkerboard { delta, scale, .. }
-            if finite(delta) && finite(scale) && !scale.contains(&0.0) =>
+        Texture::Checkerboard { delta, scale, shear, .. }
+            if finite(delta) && finite(scale) && finite(shear) && !scale.contains(&0.0) =>
         {
             return Ok(());
         }
         Texture::Checkerboard { .. } => {
             "has fields whose size is zero or not finite, or whose offset is not finite"
         }
-        Texture::Image { transform, .. } if finite(&transform.scale) && finite(&transform.offset) => {
+        Texture::Image { transform: t, .. } if [t.scale, t.shear, t.offset].iter().all(finite) => {
             return Ok(());
         }
         Texture::Image { .. } => "has a scale or an offset that is not finite",

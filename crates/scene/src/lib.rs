@@ -7,6 +7,7 @@
 pub mod bsdf;
 pub mod bvh;
 pub mod camera;
+pub mod casters;
 pub mod description;
 pub mod diagnostic;
 mod figures;
@@ -17,7 +18,9 @@ mod references;
 pub mod scene;
 pub mod surface;
 pub mod texture;
+mod traits;
 mod warnings;
+pub mod wrapped;
 
 pub use caustica_math::MemoryLimit;
 pub use description::Description;

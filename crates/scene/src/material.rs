@@ -2,11 +2,13 @@
 
 use caustica_math::{Vec2, Wavelengths};
 
-use crate::bsdf::{Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric};
+use crate::bsdf::{
+    Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric, ThinDielectric,
+};
 use crate::description::MaterialKind;
 use crate::texture::TextureTable;
 
-/// The material's BSDF at texture coordinates `uv`.
+/// The BSDF of a material that is no wrapper, at texture coordinates `uv`.
 #[inline(always)]
 pub fn bsdf_at(kind: &MaterialKind, textures: &TextureTable<'_>, uv: Vec2, w: Wavelengths) -> Bsdf {
     let metal = |eta, k, reflectance| Conductor {
@@ -32,5 +34,10 @@ pub fn bsdf_at(kind: &MaterialKind, textures: &TextureTable<'_>, uv: Vec2, w: Wa
         MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, ref kd } => {
             Bsdf::Microfacet(Microfacet::new(textures.spectrum(kd, uv, w), alpha, interior_ior, exterior_ior))
         }
+        MaterialKind::ThinDielectric { interior_ior, exterior_ior, ref reflectance, ref transmittance } => {
+            let [r, t] = [reflectance, transmittance].map(|texture| textures.spectrum(texture, uv, w));
+            Bsdf::ThinDielectric(ThinDielectric::new((interior_ior, exterior_ior), r, t))
+        }
+        MaterialKind::Null | MaterialKind::Wrapped(_) => Bsdf::Null,
     }
 }

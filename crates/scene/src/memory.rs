@@ -54,9 +54,11 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
     tables + more(TREE_WHILE_BUILT * primitives).max(more(TREE * primitives) + edges.max(lamps))
 }
 
+/// Whether a shape may be. (What wrappers hold is not looked at.)
 fn is_transparent(d: &Description, shape: &Shape) -> bool {
+    use MaterialKind::{Dielectric, RoughDielectric, Wrapped};
     let kind = d.materials.get(shape.material.0 as usize).map(|m| &m.kind);
-    matches!(kind, Some(MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. }))
+    matches!(kind, Some(Dielectric { .. } | RoughDielectric { .. } | Wrapped(_)))
 }
 
 /// Refuses a scene that does not fit.

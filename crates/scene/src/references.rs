@@ -2,7 +2,6 @@
 
 use crate::description::{Description, LightKind, Texture};
 use crate::diagnostic::Diagnostic;
-use crate::scene::texture_of;
 
 /// Whether the colours of a texture are finite and none is negative. (Images are looked at apart.)
 fn is_valid(texture: &Texture) -> bool {
@@ -31,11 +30,12 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
         }
     }
     for m in &d.materials {
-        if texture_of(&m.kind).is_some_and(|t| !image_exists(t)) {
+        let textures = m.kind.textures();
+        if !textures.iter().all(|t| image_exists(t)) {
             return Err(Diagnostic::error("a material's texture names an image that does not exist")
                 .at(m.origin.clone()));
         }
-        if !texture_of(&m.kind).is_none_or(is_valid) {
+        if !textures.into_iter().all(is_valid) {
             return Err(
                 Diagnostic::error("a material's colour is negative or not finite").at(m.origin.clone())
             );

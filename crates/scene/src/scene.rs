@@ -4,10 +4,9 @@ use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, V
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
-use crate::camera::{Camera, shears};
-use crate::description::{
-    Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialKind, Texture,
-};
+use crate::camera::{Camera, film_settings, shears};
+use crate::casters::Casters;
+use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::light::{
     AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
@@ -15,8 +14,9 @@ use crate::light::{
 };
 use crate::material::bsdf_at;
 use crate::references;
-use crate::surface::{SurfacePoint, Surfaces, is_reachable};
+use crate::surface::{FlatShape, SurfacePoint, Surfaces, is_reachable};
 use crate::texture::TextureTable;
+use crate::traits::{self, Traits, varies};
 use crate::{figures, memory};
 
 /// A scene ready to be rendered. Immutable, and shared between threads.
@@ -29,8 +29,10 @@ pub struct Scene {
     surfaces: Surfaces,
     bvh: Bvh,
     materials: Vec<MaterialKind>,
+    traits: Vec<Traits>,
     images: Vec<Image>,
     lights: Lights,
+    casters: Casters,
     center: Vec3,
     radius: f32,
     brightest: f32,
@@ -67,15 +69,19 @@ impl Scene {
         memory: MemoryLimit,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
-        let film = film_of(&description, &mut warnings);
+        let film = film_settings(&description, &mut warnings);
         memory::check(&description, tree, memory)?;
         references::check(&description)?;
         figures::check(&description)?;
+        let traits = traits::of_all(&description.materials)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         let camera = Camera::among(&surfaces, &description.camera, &film)?;
         for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
-            let material = &description.materials[shape.material.0 as usize].kind;
-            flat.needs_uv = [texture_of(material), shape.emission.as_ref()].into_iter().flatten().any(varies);
+            let material = traits[shape.material.0 as usize];
+            flat.needs_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
+            flat.needs_tangents = material.is_oriented;
+            flat.is_wrapped = material.is_wrapped;
+            flat.is_mixed = material.is_mixed;
         }
         let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
         let bounds = bvh.bounds();
@@ -85,6 +91,9 @@ impl Scene {
             (bounds.center(), ((bounds.max - bounds.center()).length() * 1.0001).max(f32::MIN_POSITIVE))
         };
         let materials = description.materials.iter().map(|m| m.kind).collect();
+        let is_caster = |shape: &FlatShape| traits[shape.material as usize].is_caster;
+        let casters = (0..).zip(&surfaces.shapes).filter(|(_, s)| is_caster(s)).map(|(i, _)| i);
+        let casters = Casters::new(casters, &surfaces);
         let images = std::mem::take(&mut description.images);
         let mut scene = Self {
             camera,
@@ -92,8 +101,10 @@ impl Scene {
             surfaces,
             bvh,
             materials,
+            traits,
             images,
             lights: Lights::new(Vec::new(), &[]),
+            casters,
             center,
             radius,
             brightest: 0.0,
@@ -210,7 +221,7 @@ impl Scene {
     fn surroundings(&self, wavelengths: Wavelengths) -> Surroundings<'_> {
         Surroundings {
             surfaces: &self.surfaces,
-            textures: TextureTable { images: &self.images },
+            textures: self.textures(),
             center: self.center,
             radius: self.radius,
             wavelengths,
@@ -242,12 +253,40 @@ impl Scene {
         !self.bvh.occluded(&Ray::between(from, to))
     }
 
-    /// The BSDF at a point.
+    /// The BSDF at a point; where [`Scene::is_wrapped`] says so, [`Scene::placed`] knows it.
     #[inline(always)]
     pub fn bsdf(&self, point: &SurfacePoint, wavelengths: Wavelengths) -> Bsdf {
         let material = self.surfaces.shapes[point.shape as usize].material;
-        let textures = TextureTable { images: &self.images };
-        bsdf_at(&self.materials[material as usize], &textures, point.uv, wavelengths)
+        bsdf_at(self.material(material), &self.textures(), point.uv, wavelengths)
+    }
+
+    /// Whether the material of a point is more than one BSDF in its place.
+    #[inline(always)]
+    pub fn is_wrapped(&self, point: &SurfacePoint) -> bool {
+        self.surfaces.shapes[point.shape as usize].is_wrapped
+    }
+
+    /// Whether chance decides what the material of a point is.
+    #[inline(always)]
+    pub fn is_mixed(&self, point: &SurfacePoint) -> bool {
+        self.surfaces.shapes[point.shape as usize].is_mixed
+    }
+
+    /// The material of that index.
+    #[inline(always)]
+    pub(crate) fn material(&self, index: u32) -> &MaterialKind {
+        &self.materials[index as usize]
+    }
+
+    /// What is known of a shape's material.
+    pub(crate) fn traits(&self, shape: u32) -> Traits {
+        self.traits[self.surfaces.shapes[shape as usize].material as usize]
+    }
+
+    /// The textures.
+    #[inline(always)]
+    pub(crate) fn textures(&self) -> TextureTable<'_> {
+        TextureTable { images: &self.images }
     }
 
     /// The point as part of a lamp, if its shape is one.
@@ -269,8 +308,7 @@ impl Scene {
             probes.all(|(p, u)| {
                 let d = Frame::from_normal(p.normal).to_world(warp::cosine_hemisphere(u));
                 let ray = Ray { origin: p.off_surface(d), direction: d, t_max: f32::INFINITY };
-                self.closest(&ray)
-                    .is_none_or(|q| q.normal.dot(d) > 0.0 && !self.bsdf(&q, Wavelengths::Rgb).transmits())
+                self.closest(&ray).is_none_or(|q| q.normal.dot(d) > 0.0 && !self.traits(q.shape).has_a_back)
             })
         })
     }
@@ -324,6 +362,11 @@ impl Scene {
         &self.lights
     }
 
+    /// Where mirrors and glass are.
+    pub fn casters(&self) -> &Casters {
+        &self.casters
+    }
+
     /// The largest radiance that can be seen directly, of any lamp and channel; zero if lamps have no extent.
     pub fn brightest(&self) -> f32 {
         self.brightest
@@ -350,32 +393,4 @@ impl Scene {
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
-}
-
-/// The film. A meter's has no use for a filter: all pixels show the same.
-fn film_of(description: &Description, warnings: &mut Vec<Diagnostic>) -> FilmSettings {
-    let (mut film, pixel) = (description.film.clone(), Filter::Box { radius: 0.5 });
-    if description.camera.kind.is_meter() && film.filter != pixel {
-        film.filter = pixel;
-        let message = "a meter has no use for a pixel filter: each pixel is measured by itself";
-        warnings.push(Diagnostic::warning(message).at(description.camera.origin.clone()));
-    }
-    film
-}
-
-/// The texture that a material looks up, if it has one.
-pub(crate) fn texture_of(material: &MaterialKind) -> Option<&Texture> {
-    match material {
-        MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => Some(t),
-        MaterialKind::Mirror { .. }
-        | MaterialKind::Dielectric { .. }
-        | MaterialKind::RoughDielectric { .. }
-        | MaterialKind::Conductor { .. }
-        | MaterialKind::RoughConductor { .. } => None,
-    }
-}
-
-/// Whether a texture depends on the texture coordinates.
-fn varies(texture: &Texture) -> bool {
-    !matches!(texture, Texture::Constant(_))
 }

@@ -2,6 +2,7 @@
 
 mod border;
 mod flatten;
+mod tangents;
 
 use caustica_math::elementary::{asin, atan2};
 use caustica_math::{Frame, Vec2, Vec3, spherical};
@@ -27,6 +28,13 @@ pub struct FlatShape {
     /// Whether anything looks at its texture coordinates. Spheres leave theirs at zero otherwise, because
     /// two arcs cost as much as all the rest of a hit.
     pub needs_uv: bool,
+    /// Whether anything depends on which way the shading frame's x points. It follows ∂p/∂u then, and is arbitrary
+    /// otherwise.
+    pub needs_tangents: bool,
+    /// Whether its material is more than one BSDF in its place.
+    pub is_wrapped: bool,
+    /// Whether chance decides what its material is.
+    pub is_mixed: bool,
     first_position: u32,
     first_normal: u32,
     first_uv: u32,
@@ -39,7 +47,8 @@ pub struct SurfacePoint {
     pub position: Vec3,
     /// The geometric normal, of length one.
     pub normal: Vec3,
-    /// Shading frame; its z is the shading normal.
+    /// Shading frame; its z is the shading normal. Its x follows ∂p/∂u where [`FlatShape::needs_tangents`] says so and
+    /// there are texture coordinates to tell.
     pub frame: Frame,
     /// Texture coordinates.
     pub uv: Vec2,
@@ -192,7 +201,11 @@ impl Surfaces {
         SurfacePoint {
             position,
             normal,
-            frame: Frame::from_normal(shading),
+            frame: if flat.needs_tangents {
+                tangents::frame(shading, self.triangle_derivatives(primitive, &[a, b, c]))
+            } else {
+                Frame::from_normal(shading)
+            },
             uv,
             shape,
             primitive,
@@ -205,7 +218,8 @@ impl Surfaces {
     pub fn sphere_point(&self, primitive: u32, normal: Vec3) -> SurfacePoint {
         let sphere = &self.spheres[primitive as usize - self.triangles.len()];
         let d = &sphere.data;
-        let uv = if self.shapes[sphere.shape as usize].needs_uv {
+        let flat = &self.shapes[sphere.shape as usize];
+        let uv = if flat.needs_uv {
             let [x, y, z] = sphere.rows.map(|row| row.dot(normal));
             Vec2::new(
                 0.5 + atan2(y, x) * (0.5 * std::f32::consts::FRAC_1_PI),
@@ -217,7 +231,11 @@ impl Surfaces {
         SurfacePoint {
             position: d.center + normal * d.radius,
             normal,
-            frame: Frame::from_normal(normal),
+            frame: if flat.needs_tangents {
+                tangents::frame(normal, sphere.derivatives(normal))
+            } else {
+                Frame::from_normal(normal)
+            },
             uv,
             shape: sphere.shape,
             primitive,

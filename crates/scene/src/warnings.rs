@@ -52,11 +52,7 @@ fn clipped(scene: &Scene, warnings: &mut Vec<Diagnostic>) {
 
 /// A dielectric mesh that is not closed, alone or by others, refracts light into a medium that it never leaves.
 fn open_dielectrics(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
-    let transparent = |index: &usize| {
-        let material = description.shapes[*index].material;
-        let kind = &description.materials[material.0 as usize].kind;
-        matches!(kind, MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. })
-    };
+    let transparent = |index: &usize| scene.traits(*index as u32).bounds_a_medium;
     let shapes: Vec<usize> = (0..description.shapes.len()).filter(transparent).collect();
     for index in scene.surfaces().unclosed(&shapes) {
         let shape = &description.shapes[index];
@@ -103,7 +99,13 @@ fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
             MaterialKind::Mirror { reflectance: c }
             | MaterialKind::Conductor { reflectance: c, .. }
             | MaterialKind::RoughConductor { reflectance: c, .. } => ("a reflectance", c.max_channel()),
-            MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. } => continue,
+            MaterialKind::ThinDielectric { reflectance, transmittance, .. } => {
+                ("a factor on what glass gives back", brightest(reflectance).max(brightest(transmittance)))
+            }
+            MaterialKind::Dielectric { .. }
+            | MaterialKind::RoughDielectric { .. }
+            | MaterialKind::Null
+            | MaterialKind::Wrapped(_) => continue,
         };
         if colour > 1.0 {
             let message = format!("{what} above one reflects more light than arrives");

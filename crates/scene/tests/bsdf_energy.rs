@@ -79,7 +79,7 @@ fn sampling_integrates_eval() {
 fn smooth_surfaces_are_exact() {
     for example in examples() {
         let expected = match example.bsdf {
-            Bsdf::Dielectric(_) => 1.0,
+            Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_) | Bsdf::Null => 1.0,
             Bsdf::Diffuse(d) => f64::from(d.albedo[1]),
             Bsdf::Mirror { reflectance } => f64::from(reflectance[1]),
             _ => continue,

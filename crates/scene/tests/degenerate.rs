@@ -86,6 +86,7 @@ fn texture_coordinates_that_are_none() {
             albedo: Texture::Checkerboard {
                 delta: [0.0; 2],
                 scale: [1e-30; 2],
+                shear: [0.0; 2],
                 value1: colours.0,
                 value2: colours.1,
             },
@@ -209,8 +210,13 @@ fn materials_out_of_range() {
 
 #[test]
 fn textures_out_of_range() {
-    let checks =
-        |delta, scale| Texture::Checkerboard { delta, scale, value1: Rgb::WHITE, value2: Rgb::BLACK };
+    let checks = |delta, scale| Texture::Checkerboard {
+        delta,
+        scale,
+        shear: [0.0; 2],
+        value1: Rgb::WHITE,
+        value2: Rgb::BLACK,
+    };
     for texture in [checks([NAN, 0.0], [1.0; 2]), checks([0.0; 2], [1.0, 0.0]), checks([0.0; 2], [INF, 1.0])]
     {
         refused("a material's texture has fields", |d| {
@@ -221,7 +227,7 @@ fn textures_out_of_range() {
     for (scale, offset) in [([NAN; 2], [0.0; 2]), ([1.0; 2], [0.0, INF])] {
         refused("the emission of quad has a scale or an offset", |d| {
             d.add_image(Image { width: 1, height: 1, pixels: [Rgb::WHITE].into() });
-            let transform = TextureTransform { scale, offset };
+            let transform = TextureTransform { scale, offset, ..TextureTransform::default() };
             d.shapes[0].emission = Some(Texture::Image { image: ImageId(0), transform });
         });
     }

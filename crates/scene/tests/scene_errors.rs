@@ -2,14 +2,22 @@
 
 use caustica_math::{Rgb, Transform, Vec3};
 use caustica_scene::description::{
-    CameraKind, Crop, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind, Mesh, Texture,
-    TextureTransform,
+    CameraKind, Crop, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind, Mesh, PixelLookup,
+    Texture, TextureTransform, Wrap,
 };
 use caustica_scene::{Description, Diagnostic, Origin, Scene, Severity};
 use caustica_testkit::build;
 
-const PICTURE: Texture =
-    Texture::Image { image: ImageId(3), transform: TextureTransform { scale: [1.0; 2], offset: [0.0; 2] } };
+const PICTURE: Texture = Texture::Image {
+    image: ImageId(3),
+    transform: TextureTransform {
+        scale: [1.0; 2],
+        shear: [0.0; 2],
+        offset: [0.0; 2],
+        wrap: Wrap::Repeat,
+        filter: PixelLookup::Bilinear,
+    },
+};
 
 fn place(line: u32) -> Option<Origin> {
     Some(Origin { file: "scene.xml".into(), line, column: 0, span: None })
@@ -134,8 +142,13 @@ fn images() {
 fn colours() {
     for bad in [f32::NAN, f32::INFINITY, -0.1] {
         let bad = Rgb::new(1.0, bad, 1.0);
-        let checkers =
-            Texture::Checkerboard { delta: [0.0; 2], scale: [1.0; 2], value1: Rgb::WHITE, value2: bad };
+        let checkers = Texture::Checkerboard {
+            delta: [0.0; 2],
+            scale: [1.0; 2],
+            shear: [0.0; 2],
+            value1: Rgb::WHITE,
+            value2: bad,
+        };
         for texture in [bad.into(), checkers] {
             refuses("scene.xml:4: lamp emits a colour that is negative or not finite", |d| {
                 d.shapes[1].emission = Some(texture);

@@ -161,7 +161,8 @@ fn spheres_have_longitude_and_latitude() {
         Scene::new(d).unwrap().0
     };
     let one = caustica_math::Rgb::WHITE;
-    let checkers = Texture::Checkerboard { delta: [0.0; 2], scale: [0.1; 2], value1: one, value2: one };
+    let checkers =
+        Texture::Checkerboard { delta: [0.0; 2], scale: [0.1; 2], shear: [0.0; 2], value1: one, value2: one };
     let (textured, plain) = (scene(checkers), scene(one.into()));
     let center = to_world.point(Vec3::new(0.5, 0.0, 0.0));
     for i in 0..200 {

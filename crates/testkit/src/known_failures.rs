@@ -279,14 +279,17 @@ pub fn textured_emitters() -> Description {
         |bright: usize| (0..64).map(|i| Rgb::splat(if i % bright == 0 { 12.0 } else { 0.0 })).collect();
     let first = d.add_image(Image { width: 8, height: 8, pixels: pixels(9) });
     let second = d.add_image(Image { width: 8, height: 8, pixels: pixels(5) });
-    let image =
-        |image, scale| Texture::Image { image, transform: TextureTransform { scale, offset: [0.3, 0.1] } };
+    let image = |image, scale| Texture::Image {
+        image,
+        transform: TextureTransform { scale, offset: [0.3, 0.1], ..TextureTransform::default() },
+    };
     let panel = quad(&mut d, [-0.6, 0.9, -0.6], [1.2, 0.0, 0.0], [0.0, 0.0, 1.2], m);
     d.shapes[panel].emission = Some(image(first, [1.0, 1.0]));
     let ball = sphere(&mut d, [0.5, -0.5, 0.2], 0.4, m);
     d.shapes[ball].emission = Some(Texture::Checkerboard {
         delta: [0.1, 0.2],
         scale: [0.2, 0.3],
+        shear: [0.0; 2],
         value1: Rgb::BLACK,
         value2: Rgb::splat(1.5),
     });

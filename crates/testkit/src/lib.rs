@@ -4,6 +4,7 @@ pub mod agreement;
 pub mod build;
 pub mod chi_square;
 pub mod known_failures;
+pub mod materials;
 pub mod oracle;
 pub mod random_scene;
 pub mod rows;

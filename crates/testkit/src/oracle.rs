@@ -18,10 +18,10 @@
 //! No code is shared with the transport crate, nor with the smooth surfaces.
 
 mod film;
+mod scattering;
 
 use caustica_math::{Spectrum, Vec3, Wavelengths};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::Bsdf;
 use caustica_scene::camera::{CameraPoint, Joins};
 use caustica_scene::light::{Anchor, EmissionPdf, LightPoint};
 use caustica_scene::surface::SurfacePoint;
@@ -29,6 +29,7 @@ use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Heuristic, Strategy, StrategySet};
 
 use film::film_density;
+use scattering::{Scattering, scatter};
 
 type Vector = [f64; 3];
 
@@ -91,22 +92,6 @@ impl Node<'_> {
     }
 }
 
-/// Scattering at a vertex: for a smooth surface coefficients of δ(to_light).
-struct Scattering {
-    /// f·|cos_s|/|cos_g| with the cosines on the light's side.
-    value: Vector,
-    to_light_pdf: f64,
-    to_camera_pdf: f64,
-    smooth: bool,
-    uncertainty: f64,
-}
-
-impl Scattering {
-    fn smooth(value: Vector, to_light_pdf: f64, to_camera_pdf: f64) -> Self {
-        Self { value, to_light_pdf, to_camera_pdf, smooth: true, uncertainty: 0.0 }
-    }
-}
-
 /// The edge from xⱼ to xⱼ₊₁.
 struct Edge {
     falloff: f64,
@@ -136,6 +121,11 @@ pub struct Judgement {
     pub measured: [f64; 3],
     /// nᵢ·pᵢ(x) for i = 0 to k: a strategy's density times how often a pass tries it per pixel of the window.
     pub densities: Vec<f64>,
+    /// Where rays may be aimed: the walk's density of the direction in which it leaves the last vertex that is not
+    /// smooth, and the density of an aimed ray. `None` if the path has no such vertex, or none that such rays leave.
+    pub aimed: Option<[f64; 2]>,
+    /// For each strategy, whether its joining edge is one that forbids aimed rays.
+    pub forbids: Vec<bool>,
     /// About how large a relative error the offsets of rays and rounding to `f32` may cause.
     pub uncertainty: f64,
 }
@@ -144,6 +134,18 @@ impl Judgement {
     /// The unweighted estimate that strategy ought to make: f/(n·p).
     pub fn estimate(&self, strategy: Strategy) -> [f64; 3] {
         self.measured.map(|f| f / self.densities[strategy.s as usize])
+    }
+
+    /// The share of the walk of s = 0 in a path that `rays` aimed ones may make too: p/(p + n·q). They start only where
+    /// no strategy of the set can join what comes before.
+    pub fn walk_share(&self, rays: u32, set: &StrategySet) -> f64 {
+        let vertices = self.densities.len() as u32;
+        let forbidden =
+            (0..vertices).any(|s| self.forbids[s as usize] && set.contains(Strategy { s, t: vertices - s }));
+        match self.aimed {
+            Some([p, q]) if !forbidden => p / (p + f64::from(rays) * q),
+            _ => 1.0,
+        }
     }
 
     /// The weight of that strategy among those of the set.
@@ -173,7 +175,8 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     let radiance = lanes(lights.radiance(lamp, narrow(emitted)));
     if nodes[0].infinite && nodes[1].infinite {
         // A camera of parallel rays looks at the sky: a density in both measures at once, and no other way.
-        return Ok(Judgement { measured: radiance, densities: vec![1.0, 0.0], uncertainty: 0.0 });
+        let (densities, forbids) = (vec![1.0, 0.0], vec![false; 2]);
+        return Ok(Judgement { measured: radiance, densities, aimed: None, forbids, uncertainty: 0.0 });
     }
     let edges: Vec<Edge> = nodes.windows(2).map(|n| Edge::new(&n[0], &n[1])).collect();
     let scatterings: Vec<Option<Scattering>> = (0..=k)
@@ -210,7 +213,41 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     let uncertainty = dimming
         + edges.iter().map(|e| e.uncertainty).sum::<f64>()
         + scatterings.iter().flatten().map(|s| s.uncertainty).sum::<f64>();
-    Ok(Judgement { measured, densities, uncertainty })
+    let start = (1..k).find(|j| scatterings[*j].as_ref().is_some_and(|s| !s.smooth)).filter(|j| *j > 1);
+    let forbids = (0..=k).map(|s| start.is_some_and(|j| s > j) && densities[s] > 0.0).collect();
+    let mut uncertainty = uncertainty;
+    let aimed = start.and_then(|j| {
+        let (q, doubt) = aimed_density(scene, &nodes[j], [&nodes[j - 1], &nodes[j + 1]])?;
+        uncertainty += doubt;
+        Some([scatterings[j].as_ref()?.to_light_pdf, q])
+    });
+    Ok(Judgement { measured, densities, aimed, forbids, uncertainty })
+}
+
+/// The density per solid angle with which a ray is aimed from a vertex at the one before it (nearer to the lamp), and how
+/// doubtful that is, near the border of a cone. Each of the balls that are seen from the vertex, on the side of the one
+/// after it unless it transmits, is chosen by its solid angle.
+fn aimed_density(scene: &Scene, from: &Node<'_>, [before, after]: [&Node<'_>; 2]) -> Option<(f64, f64)> {
+    let (direction, normal) = (from.to(before).0, from.normal?);
+    let side = dot(normal, from.to(after).0).signum();
+    let transmits = from.surface?.bsdf.transmits();
+    let (mut all, mut hit, mut doubt) = (0.0, 0.0, 0.0);
+    for caster in scene.casters().iter() {
+        let (d, radius) = (plus(wide(caster.center), from.at, -1.0), f64::from(caster.radius));
+        let squared = dot(d, d);
+        let hidden = !transmits && side * dot(normal, d) + radius <= 0.0;
+        if squared <= 1.001 * radius * radius || hidden {
+            continue;
+        }
+        let cos = (1.0 - radius * radius / squared).sqrt();
+        let excess = dot(d, direction) / squared.sqrt() - cos;
+        all += 2.0 * std::f64::consts::PI * (1.0 - cos);
+        hit += f64::from(u8::from(excess > 0.0));
+        if excess.abs() < 1e-5 {
+            doubt = 1.0;
+        }
+    }
+    (all > 0.0).then(|| (hit / all, doubt))
 }
 
 /// Densities at the two ends of a path.
@@ -278,97 +315,4 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     nodes.extend(eye.iter().rev().map(surface));
     nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, offset: 0.0, surface: None });
     Ok(nodes)
-}
-
-fn to_local(v: &Vertex, d: Vector) -> Vector {
-    let f = v.point.frame;
-    [dot(d, wide(f.x)), dot(d, wide(f.y)), dot(d, wide(f.z))]
-}
-
-/// Scattering at `v` from the direction `to_light` into `to_camera`, which are known to within `blurs`.
-fn scatter(v: &Vertex, [to_light, to_camera]: [Vector; 2], blurs: [f64; 2]) -> Result<Scattering, String> {
-    let (light, camera, normal) = (to_local(v, to_light), to_local(v, to_camera), wide(v.point.normal));
-    let cos_g = dot(normal, to_light);
-    if cos_g * light[2] <= 0.0 || dot(normal, to_camera) * camera[2] <= 0.0 {
-        return Err("a direction is on different sides of the two normals".into());
-    }
-    let mut s = match &v.bsdf {
-        Bsdf::Mirror { reflectance } => mirror(lanes(*reflectance), light, camera),
-        Bsdf::Conductor(b) => {
-            let [eta, k, scale] = [b.eta, b.k, b.reflectance].map(lanes);
-            let lane = |i: usize| scale[i] * fresnel(light[2], eta[i], k[i]);
-            mirror([0, 1, 2].map(lane), light, camera)
-        }
-        Bsdf::Dielectric(b) => glass((b.interior_ior, b.exterior_ior), light, camera),
-        Bsdf::RoughDielectric(b) if v.bsdf.is_delta() => glass(b.indices(), light, camera),
-        b => Ok(rough(b, light, camera, blurs[0] + blurs[1])),
-    }?;
-    // A refracted cosine follows from the other one, and Fresnel's equations from both.
-    let shares = [light[2], camera[2]].map(|cos| if s.smooth { cos * cos } else { cos.abs() });
-    s.uncertainty += blurs[0] / shares[0] + blurs[1] / shares[1];
-    s.value = s.value.map(|f| f / cos_g.abs());
-    Ok(s)
-}
-
-/// All that is not Dirac. How well it is known shows when a direction changes a little.
-fn rough(b: &Bsdf, light: Vector, camera: Vector, blur: f64) -> Scattering {
-    let eval = |x: f64, y: f64| {
-        let e = b.eval(narrow(light), narrow(plus(camera, [x, y, 0.0], blur)));
-        let [r, g, b] = lanes(e.value);
-        [r, g, b, e.to_light_pdf.get().into(), e.to_camera_pdf.get().into()]
-    };
-    let figures = eval(0.0, 0.0);
-    let changes = [eval(1.0, 1.0), eval(1.0, -1.0)]
-        .map(|other| (0..5).map(|i| (other[i] - figures[i]).abs() / figures[i].abs()).fold(0.0, f64::max));
-    let [r, g, b, to_light_pdf, to_camera_pdf] = figures;
-    let uncertainty = 2.0 * changes[0].max(changes[1]);
-    Scattering { value: [r, g, b], to_light_pdf, to_camera_pdf, smooth: false, uncertainty }
-}
-
-/// How far a smooth surface's directions may be off, by rounding.
-const SNELL: f64 = 1e-3;
-
-/// Mirroring keeps solid angles: all three coefficients are the reflectance or one.
-fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scattering, String> {
-    if distance(light, [-camera[0], -camera[1], camera[2]]) > SNELL || light[2] <= 0.0 {
-        return Err(format!("a mirror sends {light:?} to {camera:?}"));
-    }
-    Ok(Scattering::smooth(reflectance, 1.0, 1.0))
-}
-
-/// The two Dirac lobes of a smooth interface.
-///
-/// Refracted radiance is T·(n_c/n_l)²·L, so that f·|cos| = T·(n_c/n_l)²·δ(to_light). The light walk refracts with
-/// density T·δ(to_camera), and n²·|cos|·dω is the same on both sides, so that
-/// δ(to_camera) = δ(to_light)·dω_l/dω_c = δ(to_light)·(n_c/n_l)²·|cos_c|/|cos_l|.
-fn glass((interior, exterior): (f32, f32), light: Vector, camera: Vector) -> Result<Scattering, String> {
-    let index = |v: Vector| f64::from(if v[2] > 0.0 { exterior } else { interior });
-    let (n_light, n_camera) = (index(light), index(camera));
-    let beyond = f64::from(exterior) + f64::from(interior) - n_light;
-    let reflectance = fresnel(light[2].abs(), beyond / n_light, 0.0);
-    if light[2] * camera[2] > 0.0 {
-        let upper = |v: Vector| [v[0], v[1], v[2].abs()];
-        mirror([reflectance; 3], upper(light), upper(camera))?;
-        return Ok(Scattering::smooth([reflectance; 3], reflectance, reflectance));
-    }
-    let tangent = |axis: usize| n_light * light[axis] + n_camera * camera[axis];
-    if tangent(0).hypot(tangent(1)) > SNELL {
-        return Err(format!("glass refracts {light:?} to {camera:?}"));
-    }
-    let (share, scale) = (1.0 - reflectance, (n_camera / n_light).powi(2));
-    Ok(Scattering::smooth([share * scale; 3], share, share * scale * (camera[2] / light[2]).abs()))
-}
-
-/// Fresnel's equations for unpolarised light, for an index `eta` + i·`k` relative to the medium around.
-fn fresnel(cos: f64, eta: f64, k: f64) -> f64 {
-    let square = [eta * eta - k * k, 2.0 * eta * k];
-    // w = √(index² − sin²), the refracted wave's cosine times its index.
-    let (re, im) = (square[0] - (1.0 - cos * cos), square[1]);
-    let modulus = re.hypot(im);
-    let w = [(0.5 * (modulus + re)).max(0.0).sqrt(), (0.5 * (modulus - re)).max(0.0).sqrt()];
-    let share = |a: [f64; 2]| {
-        let norm = |sign: f64| (a[0] + sign * w[0]).powi(2) + (a[1] + sign * w[1]).powi(2);
-        norm(-1.0) / norm(1.0)
-    };
-    0.5 * (share([cos, 0.0]) + share(square.map(|c| c * cos)))
 }

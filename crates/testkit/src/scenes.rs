@@ -152,6 +152,7 @@ pub fn textured() -> Description {
     let checks = |a, b| Texture::Checkerboard {
         delta: [0.0; 2],
         scale: [0.25; 2],
+        shear: [0.0; 2],
         value1: Rgb::splat(a),
         value2: Rgb::splat(b),
     };

@@ -9,7 +9,7 @@ use caustica_scene::description::Integrator;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::kernel::{EyeSample, Kernel};
-use crate::numbers::EyeNumbers;
+use crate::numbers::{Bounces, EyeNumbers};
 use crate::sink::Sink;
 use crate::vertex::Vertex;
 
@@ -37,7 +37,7 @@ impl Kernel<'_> {
             }
             Integrator::Simple { position, energy } => self.simple(p, position.into(), energy),
             Integrator::Directional { direction, irradiance } => {
-                self.sunlit(p, ray, direction.into(), irradiance)
+                self.sunlit((p, ray), direction.into(), irradiance, numbers)
             }
             _ => Rgb::BLACK,
         }
@@ -62,9 +62,15 @@ impl Kernel<'_> {
     }
 
     /// The material's answer to one directional light, with its shadow.
-    fn sunlit(&self, p: &SurfacePoint, ray: &Ray, direction: Vec3, irradiance: Rgb) -> Rgb {
+    fn sunlit(
+        &self,
+        (p, ray): (&SurfacePoint, &Ray),
+        direction: Vec3,
+        irradiance: Rgb,
+        numbers: &mut EyeNumbers,
+    ) -> Rgb {
         let Some(towards) = (-direction).try_normalized() else { return Rgb::BLACK };
-        let vertex = Vertex::new(self.scene, *p, -ray.direction, self.wavelengths);
+        let vertex = Vertex::new(self.scene, *p, -ray.direction, self.wavelengths, || numbers.label(0));
         let Some(scatter) = vertex.scatter(Walk::FromCamera, towards) else { return Rgb::BLACK };
         let arriving = self.wavelengths.spectrum(irradiance) * self.open(p, towards, f32::INFINITY);
         self.wavelengths.rgb(scatter.value * arriving)

@@ -11,6 +11,7 @@ use crate::bdpt::Candidates;
 use crate::numbers::{EyeNumbers, Needs};
 use crate::sink::Sink;
 use crate::strategy::{Classes, StrategySet};
+use crate::vertex::Vertex;
 use crate::walk::{Flight, Subpath};
 use crate::weight::{Heuristic, VertexDensities};
 
@@ -35,6 +36,9 @@ pub struct Settings {
     /// Whether `bdpt` adds up all strategies for every weight, instead of running sums: slower, the same up to
     /// rounding. Sets that are no union of classes need it and get it anyway.
     pub exhaustive_weights: bool,
+    /// How many rays `bdpt` aims at mirrors and glass from each point of an eye path from where no other strategy makes
+    /// a path; at most [`Settings::MOST_AIMED_RAYS`]. Weights that add up all strategies go without.
+    pub aimed_rays: u32,
 }
 
 impl Default for Settings {
@@ -48,11 +52,15 @@ impl Default for Settings {
             strategies: StrategySet::default(),
             heuristic: Heuristic::Balance,
             exhaustive_weights: false,
+            aimed_rays: 2,
         }
     }
 }
 
 impl Settings {
+    /// More rays are not aimed.
+    pub const MOST_AIMED_RAYS: u32 = 63;
+
     /// After how many bounces roulette begins, by default or as set.
     pub fn roulette_start(&self) -> u32 {
         let pairs = matches!(self.integrator, Integrator::Bdpt | Integrator::Light);
@@ -74,6 +82,7 @@ pub struct Kernel<'a> {
     pub(crate) classes: Classes,
     pub(crate) exhaustive: bool,
     pub(crate) heuristic: Heuristic,
+    pub(crate) aimed_rays: u32,
     pub(crate) max_edges: usize,
     pub(crate) roulette_start: usize,
     /// Light paths in one pass: as many as the window has pixels.
@@ -90,6 +99,7 @@ pub struct Scratch {
     pub(crate) densities: Vec<VertexDensities>,
     pub(crate) weights: Vec<f32>,
     pub(crate) candidates: Candidates,
+    pub(crate) aimed: Vec<Vertex>,
 }
 
 /// One eye path's beginning.
@@ -108,11 +118,14 @@ impl<'a> Kernel<'a> {
         if scene.camera.joins() == Joins::Nothing {
             settings.strategies = settings.strategies.without_splats();
         }
+        let exhaustive = settings.exhaustive_weights || settings.strategies.classes().is_none();
+        let aims = !exhaustive && !scene.casters().is_empty();
         Self {
             scene,
             filter: PixelFilter::new(&scene.film.filter),
             classes: settings.strategies.touched(),
-            exhaustive: settings.exhaustive_weights || settings.strategies.classes().is_none(),
+            exhaustive,
+            aimed_rays: if aims { settings.aimed_rays.min(Settings::MOST_AIMED_RAYS) } else { 0 },
             heuristic: settings.heuristic,
             max_edges: settings.max_depth.unwrap_or(LONGEST_PATH).clamp(1, LONGEST_PATH) as usize,
             roulette_start: settings.roulette_start() as usize,

@@ -30,10 +30,11 @@ impl Kernel<'_> {
         let first = throughput.max_lane();
         for bounce in 1..self.max_edges {
             let Some(point) = self.scene.closest(&ray) else { return };
-            let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths);
+            let label = || numbers.label(bounce - 1);
+            let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths, label);
             self.splat_surface(&vertex, throughput, numbers.lens(bounce - 1), sink);
             let roulette = bounce >= self.roulette_start;
-            let drawn = numbers.bounce(bounce - 1, &vertex.bsdf, roulette);
+            let drawn = numbers.bounce(bounce - 1, &vertex, roulette);
             let Some((direction, s, _)) = vertex.sample(Walk::FromLight, drawn.u) else { return };
             throughput *= s.value * (1.0 / s.forward.0);
             if !throughput.is_valid() {

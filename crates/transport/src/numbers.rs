@@ -8,7 +8,8 @@
 use caustica_math::stream::GROUP;
 use caustica_math::{SampleId, SampleStream, Sampler};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::Bsdf;
+
+use crate::vertex::Vertex;
 
 // The slots of a group.
 const FILM: u64 = 0;
@@ -24,8 +25,12 @@ const POINT: u64 = 3;
 
 // Groups beyond those of all bounces.
 const CANDIDATES: u64 = 1 << 16;
+/// The first of those of directions to aim at.
+const AIMED: u64 = 1 << 20;
 /// The first of those of the places on the lens that the points of a light path are joined with.
 const JOINED: u64 = 1 << 16;
+/// The first of those that decide what the vertices are.
+const LABELS: u64 = 1 << 40;
 
 /// The numbers of one bounce.
 pub(crate) struct Bounce {
@@ -68,13 +73,19 @@ pub(crate) trait Bounces {
         if needed { self.draw(group, slot) } else { [0.0; 2] }
     }
 
-    /// Those of the bounce at the surface vertex of that index (from 0), as far as the BSDF there and roulette need
-    /// them.
+    /// What the surface vertex of that index (from 0) is, where its material is a mixture. Both dimensions make one
+    /// number, so that enough of it is left for mixtures of mixtures.
+    fn label(&mut self, vertex: usize) -> f64 {
+        let [high, low] = self.draw(LABELS + vertex as u64, LOBE).map(f64::from);
+        high + low / f64::from(1 << 24)
+    }
+
+    /// Those of the bounce at the surface vertex of that index, as far as the BSDF there and roulette need them.
     #[inline]
-    fn bounce(&mut self, vertex: usize, bsdf: &Bsdf, roulette: bool) -> Bounce {
-        let group = Self::FIRST + vertex as u64;
-        let [u0, u1] = self.draw_if(!bsdf.is_delta(), group, BOUNCE);
-        let [u2, survival] = self.draw_if(roulette || bsdf.has_lobes(), group, LOBE);
+    fn bounce(&mut self, index: usize, vertex: &Vertex, roulette: bool) -> Bounce {
+        let group = Self::FIRST + index as u64;
+        let [u0, u1] = self.draw_if(!vertex.bsdf.is_delta(), group, BOUNCE);
+        let [u2, survival] = self.draw_if(roulette || vertex.has_lobes(), group, LOBE);
         Bounce { u: [u0, u1, u2], survival }
     }
 }
@@ -110,6 +121,14 @@ impl EyeNumbers {
     pub fn next_event(&mut self, vertex: usize) -> ([f32; 2], [f32; 2]) {
         let group = vertex as u64;
         (self.draw_if(self.needs.choice, group, CHOICE), self.draw(group, POINT))
+    }
+
+    /// The first of the numbers of vertices that aimed rays find.
+    pub const AIMED_VERTICES: usize = 1 << 21;
+
+    /// Of the directions in which rays are aimed from the surface vertex of that index.
+    pub fn aimed(&mut self, vertex: usize) -> [f32; 2] {
+        self.draw(AIMED + vertex as u64, BOUNCE)
     }
 
     /// Of roulette among what the path can be joined with.

@@ -66,7 +66,8 @@ impl Kernel<'_> {
                 }
                 break;
             };
-            let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths);
+            let label = || numbers.label(edges - 1);
+            let vertex = Vertex::new(self.scene, point, -ray.direction, self.wavelengths, label);
             if let Some(lamp) = self.scene.lamp_at(&point) {
                 sum += throughput * self.lamp(&lamp, &ray, (&arrival, technique));
             }
@@ -80,7 +81,7 @@ impl Kernel<'_> {
                 break;
             }
             let roulette = edges >= self.roulette_start;
-            let bounce = numbers.bounce(edges - 1, &vertex.bsdf, roulette);
+            let bounce = numbers.bounce(edges - 1, &vertex, roulette);
             let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
             throughput *= s.value * (1.0 / s.forward.0);
             if !throughput.is_valid() {

@@ -1,8 +1,9 @@
 //! Path vertices on surfaces.
 
-use caustica_math::{SolidAnglePdf, Spectrum, Vec3, Wavelengths};
+use caustica_math::{Frame, SolidAnglePdf, Spectrum, Vec3, Wavelengths};
 use caustica_scene::Scene;
-use caustica_scene::bsdf::{Bsdf, Walk};
+use caustica_scene::bsdf::{Bsdf, Bump, Evaluated, Walk};
+use caustica_scene::description::BumpRule;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::fault::{Fault, is_planted};
@@ -11,14 +12,15 @@ use crate::weight::RunningSums;
 /// A vertex of a subpath, on a surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Vertex {
-    /// Where, with its normals.
+    /// Where, with its normals. (The shading frame of a surface that is seen turned around is turned; its geometric
+    /// normal never is, because lamps know their side by it.)
     pub point: SurfacePoint,
     /// How it scatters.
     pub bsdf: Bsdf,
     /// Unit direction to the previous vertex of the walk.
     pub prev: Vec3,
-    /// The same in the shading frame.
-    local_prev: Vec3,
+    /// The same in the shading frame. Where the BSDF has a normal of its own, that normal is here instead.
+    local: Vec3,
     /// The product of f·cos/pdf (for a light path: times emission over its density) up to here, without
     /// this vertex's own scattering.
     pub throughput: Spectrum,
@@ -31,6 +33,10 @@ pub struct Vertex {
     pub back: f32,
     /// Whether the walk went on from here by a Dirac lobe.
     pub delta: bool,
+    /// Whether the surface counts as turned around.
+    turned: bool,
+    /// What is done about the normal, if it is the BSDF's own.
+    bump: Option<BumpRule>,
     /// What the weights need to know of the subpath before here.
     pub sums: RunningSums,
 }
@@ -51,25 +57,107 @@ pub struct Scatter {
 
 impl Vertex {
     /// The vertex where a ray of direction `-prev` arrives. If it arrives on a side of the shading normal that is
-    /// not that of the geometric one, nothing is scattered, whichever walk asks; but a lamp still shines.
+    /// not that of the geometric one, nothing is scattered, whichever walk asks; but a lamp still shines. `label` is
+    /// asked for a uniform number in [0, 1) where the material is a mixture: the vertex is one of its parts.
+    ///
+    /// All strategies make an inner vertex of a path by exactly one walk, and the choice depends on the place alone. So
+    /// its probability is a factor of all their densities, and of the integrand: it cancels everywhere.
     #[inline]
-    pub fn new(scene: &Scene, point: SurfacePoint, prev: Vec3, wavelengths: Wavelengths) -> Self {
-        let mut local_prev = point.frame.to_local(prev);
-        if local_prev.z * point.normal.dot(prev) <= 0.0 {
-            // No BSDF scatters along the horizon.
-            local_prev.z = 0.0;
+    pub fn new(
+        scene: &Scene,
+        point: SurfacePoint,
+        prev: Vec3,
+        wavelengths: Wavelengths,
+        label: impl FnOnce() -> f64,
+    ) -> Self {
+        let mut local = point.frame.to_local(prev);
+        if scene.is_wrapped(&point) {
+            let label = if scene.is_mixed(&point) { label() } else { 0.0 };
+            return Self::wrapped(scene, point, prev, (label, wavelengths));
         }
+        if local.z * point.normal.dot(prev) <= 0.0 {
+            // No BSDF scatters along the horizon.
+            local.z = 0.0;
+        }
+        Self::of(scene.bsdf(&point, wavelengths), point, prev, local)
+    }
+
+    /// The same where the material is more than a BSDF.
+    #[inline(never)]
+    fn wrapped(
+        scene: &Scene,
+        mut point: SurfacePoint,
+        prev: Vec3,
+        (label, wavelengths): (f64, Wavelengths),
+    ) -> Self {
+        let placed = scene.placed(&point, prev, label, wavelengths);
+        if placed.bsdf == Bsdf::Null {
+            // Where there is nothing, there are no shading normals.
+            point.frame = Frame::from_normal(point.normal);
+            return Self::of(placed.bsdf, point, prev, point.frame.to_local(prev));
+        }
+        if placed.turned {
+            point.frame.z = -point.frame.z;
+        }
+        let local = point.frame.to_local(prev);
+        let mut vertex = Self { turned: placed.turned, ..Self::of(placed.bsdf, point, prev, local) };
+        if local.z * vertex.side(prev) <= 0.0 {
+            vertex.local.z = 0.0;
+        } else if let Some(Bump { normal, rule }) = placed.bump {
+            (vertex.local, vertex.bump) = (normal, Some(rule));
+        }
+        vertex
+    }
+
+    #[inline]
+    fn of(bsdf: Bsdf, point: SurfacePoint, prev: Vec3, local: Vec3) -> Self {
         Self {
-            bsdf: scene.bsdf(&point, wavelengths),
             point,
+            bsdf,
             prev,
-            local_prev,
+            local,
             throughput: Spectrum::ZERO,
             forward: 0.0,
             reverse: 0.0,
             back: 0.0,
             delta: false,
+            turned: false,
+            bump: None,
             sums: RunningSums::default(),
+        }
+    }
+
+    /// The cosine of a direction to the geometric normal, turned with the surface.
+    #[inline]
+    pub fn side(&self, direction: Vec3) -> f32 {
+        let cos = self.point.normal.dot(direction);
+        if self.turned { -cos } else { cos }
+    }
+
+    /// The normal that the BSDF has, if it is not the surface's own.
+    #[inline]
+    pub fn bump(&self) -> Option<Bump> {
+        self.bump.map(|rule| Bump { normal: self.local, rule })
+    }
+
+    /// The direction to the previous vertex, in the shading frame. On the horizon where nothing is scattered.
+    #[inline]
+    fn local_prev(&self) -> Vec3 {
+        if self.bump.is_some() { self.point.frame.to_local(self.prev) } else { self.local }
+    }
+
+    /// Whether sampling asks for the number of the lobe.
+    #[inline]
+    pub fn has_lobes(&self) -> bool {
+        self.bsdf.has_lobes() || self.bump.is_some()
+    }
+
+    /// The BSDF, for directions in the shading frame.
+    #[inline]
+    fn eval(&self, to_light: Vec3, to_camera: Vec3) -> Evaluated {
+        match self.bump() {
+            None => self.bsdf.eval(to_light, to_camera),
+            Some(bump) => bump.eval(&self.bsdf, to_light, to_camera),
         }
     }
 
@@ -83,14 +171,14 @@ impl Vertex {
     /// `None` if it is zero.
     #[inline]
     pub fn scatter(&self, walk: Walk, next: Vec3) -> Option<Scatter> {
-        let cos = self.point.normal.dot(next);
-        let local = self.point.frame.to_local(next);
-        if cos * local.z <= 0.0 || self.local_prev.z == 0.0 {
+        let cos = self.side(next);
+        let (local, local_prev) = (self.point.frame.to_local(next), self.local_prev());
+        if cos * local.z <= 0.0 || local_prev.z == 0.0 {
             return None;
         }
         let scatter = match walk {
             Walk::FromCamera => {
-                let e = self.bsdf.eval(local, self.local_prev);
+                let e = self.eval(local, local_prev);
                 if is_planted(Fault::SwappedDensities) {
                     return (!e.value.is_black()).then_some(Scatter {
                         value: e.value,
@@ -101,7 +189,7 @@ impl Vertex {
                 Scatter { value: e.value, forward: e.to_light_pdf, reverse: e.to_camera_pdf }
             }
             Walk::FromLight => {
-                let e = self.bsdf.eval(self.local_prev, local);
+                let e = self.eval(local_prev, local);
                 let ratio = if is_planted(Fault::Adjoint) { 1.0 } else { cos.abs() / self.cos(self.prev) };
                 let value = e.value * ratio;
                 Scatter { value, forward: e.to_camera_pdf, reverse: e.to_light_pdf }
@@ -113,12 +201,16 @@ impl Vertex {
     /// Samples the next direction; also returns whether it came from a Dirac lobe.
     #[inline]
     pub fn sample(&self, walk: Walk, u: [f32; 3]) -> Option<(Vec3, Scatter, bool)> {
-        if self.local_prev.z == 0.0 {
+        let local_prev = self.local_prev();
+        if local_prev.z == 0.0 {
             return None;
         }
-        let s = self.bsdf.sample(walk, self.local_prev, u)?;
+        let s = match self.bump() {
+            None => self.bsdf.sample(walk, local_prev, u),
+            Some(bump) => bump.sample(&self.bsdf, walk, local_prev, u),
+        }?;
         let next = self.point.frame.to_world(s.direction);
-        let cos = self.point.normal.dot(next);
+        let cos = self.side(next);
         if cos * s.direction.z <= 0.0 {
             return None;
         }
@@ -133,7 +225,7 @@ impl Vertex {
     /// scales radiance; one for reflection.
     #[inline]
     pub fn radiance_scale(&self, to_light: Vec3) -> f32 {
-        self.bsdf.radiance_scale(self.point.normal.dot(to_light), self.local_prev.z)
+        self.bsdf.radiance_scale(self.side(to_light), self.local_prev().z)
     }
 
     /// Whether the vertex can be joined with another.

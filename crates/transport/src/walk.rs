@@ -107,7 +107,8 @@ impl Kernel<'_> {
                 }
                 return;
             };
-            let mut vertex = Vertex::new(self.scene, point, -flight.ray.direction, self.wavelengths);
+            let label = || numbers.label(path.vertices.len());
+            let mut vertex = Vertex::new(self.scene, point, -flight.ray.direction, self.wavelengths, label);
             let edge = match flight.from {
                 Some(from) => Edge::finite(point.position.distance_squared(from)),
                 None if is_planted(Fault::InfinityJacobian) => Edge::finite(4.0),
@@ -139,7 +140,7 @@ impl Kernel<'_> {
                 return;
             }
             let roulette = path.vertices.len() >= self.roulette_start;
-            let bounce = numbers.bounce(path.vertices.len() - 1, &vertex.bsdf, roulette);
+            let bounce = numbers.bounce(path.vertices.len() - 1, &vertex, roulette);
             if !self.scatter(walk, &mut flight, &bounce, path)
                 || roulette && !survives(&mut flight, first_throughput, bounce.survival)
             {

@@ -3,8 +3,10 @@
 
 use caustica_math::{Filter, Rgb};
 use caustica_scene::Description;
-use caustica_scene::description::{CameraKind, Crop, LightKind};
+use caustica_scene::description::{BumpRule, CameraKind, Crop, LightKind, MaterialId};
 use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten};
+use caustica_testkit::build::quad;
+use caustica_testkit::materials::{bump, frosted, leaves, normal_map, thin_glass, two_sided};
 use caustica_testkit::scenes::*;
 use caustica_testkit::ways::{ODD, Way, Way::*};
 
@@ -62,6 +64,39 @@ fn shading_normals() {
     check("smooth glass", smooth_mesh(glass_kind(false)), 600, &[Bdpt, Naive, Path]);
     check("smooth rough glass", smooth_mesh(rough_glass_kind()), 400, &[Bdpt, Naive, Path, Light]);
     check("smooth metal", smooth_mesh(metal_kind(Some(0.2))), 400, &[Bdpt, Path, Light]);
+}
+
+/// The box with a screen of some material before its ball, and another one below the lamp.
+fn screened(make: impl Fn(&mut Description) -> MaterialId) -> Description {
+    let mut d = ball(metal_kind(Some(0.3)));
+    let m = make(&mut d);
+    quad(&mut d, [-0.9, -0.9, -0.7], [1.2, 0.0, 0.0], [0.0, 1.0, 0.4], m);
+    quad(&mut d, [-0.6, 0.4, -0.6], [0.0, 0.1, 1.0], [1.0, 0.0, 0.0], m);
+    d
+}
+
+#[test]
+fn materials_of_others() {
+    check("leaves", screened(leaves), 800, &[Bdpt, Naive, Path, ODD]);
+    check("frosted", screened(frosted), 1500, &[Bdpt, Naive, Path, NoLightImage]);
+    check("thin", screened(|d| d.add_material(thin_glass())), 800, &[Bdpt, Naive, Path]);
+    let both = |d: &mut Description| two_sided(d, MaterialId(0), MaterialId(1));
+    check("two-sided", screened(both), 400, &[Bdpt, Naive, Path, Light, ODD]);
+    let clay = |d: &mut Description| {
+        let both = two_sided(d, MaterialId(0), MaterialId(1));
+        bump(d, 0.1, BumpRule::default(), both)
+    };
+    check("bumps", screened(clay), 400, &[Bdpt, Naive, Path, Light, ODD]);
+    let mirror = |d: &mut Description| {
+        let m = d.add_material(metal_kind(None));
+        bump(d, 0.05, BumpRule::default(), m)
+    };
+    check("bumpy mirror", screened(mirror), 1500, &[Bdpt, Naive, Path]);
+    let rough = |d: &mut Description| {
+        let m = d.add_material(metal_kind(Some(0.2)));
+        normal_map(d, 0.7, BumpRule::default(), m)
+    };
+    check("normals", screened(rough), 400, &[Bdpt, Naive, Path, Light]);
 }
 
 #[test]

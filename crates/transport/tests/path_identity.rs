@@ -8,12 +8,13 @@ use std::collections::BTreeMap;
 
 use caustica_math::{Filter, Rgb, Transform, Vec2};
 use caustica_scene::description::{
-    CameraKind, Crop, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind, Texture,
+    BumpRule, CameraKind, Crop, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind, Texture,
     TextureTransform,
 };
 use caustica_scene::{Description, Scene};
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{add, ellipsoid, emit, glass, light, look, point_light, quad, scene, sphere};
+use caustica_testkit::materials::{bump, frosted, leaves, normal_map, thin_glass, two_sided};
 use caustica_testkit::oracle::{judge, lanes};
 use caustica_testkit::scenes::inside_out;
 use caustica_testkit::seed::seed;
@@ -33,6 +34,8 @@ type Counts = BTreeMap<Strategy, u32>;
 struct Judge<'a> {
     scene: &'a Scene,
     settings: Settings,
+    /// How many rays are aimed, with these settings.
+    aimed_rays: u32,
     checked: Counts,
     skipped: u32,
     wrong: Vec<String>,
@@ -57,7 +60,10 @@ impl Judge<'_> {
             let ratio = [0, 1, 2].map(|lane| estimate[lane] / expected[lane]);
             return Err(format!("estimate {estimate:?} is {ratio:?} of what it should be; {judgement:?}"));
         }
-        let weight = judgement.weight(c.strategy, &self.settings.strategies, self.settings.heuristic);
+        let mut weight = judgement.weight(c.strategy, &self.settings.strategies, self.settings.heuristic);
+        if c.strategy.s == 0 {
+            weight *= judgement.walk_share(self.aimed_rays, &self.settings.strategies);
+        }
         let close = (f64::from(c.weight) - weight).abs() <= TOLERANCE;
         if !close {
             return Err(format!("weight {} should be {weight}; {judgement:?}", c.weight));
@@ -93,7 +99,10 @@ fn run(name: &str, scene: &Scene, settings: Settings, samples: u32) -> (Counts, 
     let what = format!("{name}: {settings:?}");
     let kernel = Kernel::new(scene, settings.clone());
     let mut scratch = Scratch::default();
-    let mut judge = Judge { scene, settings, checked: Counts::new(), skipped: 0, wrong: vec![] };
+    // Weights that add up all strategies go without.
+    let adds_up = settings.exhaustive_weights || settings.strategies.classes().is_none();
+    let aimed_rays = if adds_up { 0 } else { settings.aimed_rays };
+    let mut judge = Judge { scene, settings, aimed_rays, checked: Counts::new(), skipped: 0, wrong: vec![] };
     let Crop { x, y, width, height } = scene.film.window();
     let pixels = width * height;
     for i in 0..samples.next_multiple_of(pixels) {
@@ -258,6 +267,61 @@ fn shading_normals() {
     verify("microfacet egg", egg(room(), microfacet()));
 }
 
+/// With an egg of a material that is made of others.
+fn made(mut d: Description, make: impl Fn(&mut Description) -> MaterialId) -> Description {
+    let m = make(&mut d);
+    let egg = add(&mut d, "egg", Geometry::Mesh(ellipsoid(6, [0.5, 0.35, 0.4])), m);
+    d.shapes[egg].to_world =
+        Transform::rotate(20.0, [1.0, 0.5, 0.0]).then(Transform::translate([0.05, -0.3, 0.2]));
+    d
+}
+
+#[test]
+fn labels() {
+    verify("mask", made(room(), leaves));
+    verify("blend", made(room(), frosted));
+    verify("nothing", made(room(), |d| d.add_material(MaterialKind::Null)));
+    verify("thin glass", made(room(), |d| d.add_material(thin_glass())));
+    // Seen from behind, a lamp too.
+    let mut d = room();
+    let (white, gold) = (coloured(&mut d, [0.8, 0.7, 0.6]), d.add_material(gold(0.3)));
+    let both = two_sided(&mut d, gold, white);
+    let screen = quad(&mut d, [-0.5, -0.8, 0.0], [0.8, 0.1, 0.0], [0.0, 0.9, 0.3], both);
+    verify("two-sided", d.clone());
+    emit(&mut d, screen, 2.0);
+    verify("two-sided lamp", d);
+}
+
+#[test]
+fn normals_of_their_own() {
+    let plain = BumpRule { flips: false, shadows: false };
+    let usual = BumpRule::default();
+    for (what, rule) in [("plain", plain), ("usual", usual)] {
+        let with = |kind: MaterialKind, scale: f32| {
+            made(room(), |d| {
+                let inner = d.add_material(kind);
+                bump(d, scale, rule, inner)
+            })
+        };
+        let clay = MaterialKind::Diffuse { albedo: Rgb([0.9, 0.7, 0.5]).into() };
+        verify(&format!("{what} bumps of clay"), with(clay, 0.2));
+        verify(&format!("{what} bumps of gold"), with(gold(0.3), 0.1));
+        verify(&format!("{what} bumps of rough glass"), with(rough_dielectric(1.5, 1.0), 0.1));
+        verify(
+            &format!("{what} bumps of a mirror"),
+            with(MaterialKind::Mirror { reflectance: Rgb::WHITE }, 0.1),
+        );
+        verify(&format!("{what} bumps of glass"), with(dielectric(1.5), 0.1));
+    }
+    let mapped = |d: &mut Description| {
+        let (front, back) = (d.add_material(microfacet()), coloured(d, [0.5, 0.6, 0.7]));
+        let front = normal_map(d, 0.8, BumpRule::default(), front);
+        let both = two_sided(d, front, back);
+        bump(d, 0.1, BumpRule::default(), both)
+    };
+    verify("a normal map on one side", made(room(), mapped));
+}
+
 /// An image without symmetries.
 fn image(d: &mut Description, width: u32, height: u32) -> ImageId {
     let pixel = |i: u32| Rgb([5, 7, 11].map(|k| 0.1 + (i * k % 17) as f32 / 8.0));
@@ -348,12 +412,17 @@ fn textured_and_many_lamps() {
     let mut d = closed();
     let shape = lamp(&mut d);
     let image = image(&mut d, 5, 3);
-    let transform = TextureTransform { scale: [1.5, 2.0], offset: [0.2, 0.1] };
+    let transform = TextureTransform { scale: [1.5, 2.0], offset: [0.2, 0.1], ..TextureTransform::default() };
     d.shapes[shape].emission = Some(Texture::Image { image, transform });
     verify("textured lamp", d.clone());
     let (value1, value2) = (Rgb([1.0, 2.0, 3.0]), Rgb([0.5, 0.1, 0.0]));
-    d.shapes[shape].emission =
-        Some(Texture::Checkerboard { delta: [0.1, 0.2], scale: [0.3, 0.4], value1, value2 });
+    d.shapes[shape].emission = Some(Texture::Checkerboard {
+        delta: [0.1, 0.2],
+        scale: [0.3, 0.4],
+        shear: [0.1, 0.0],
+        value1,
+        value2,
+    });
     verify("checkered lamp", d);
 
     let mut d = lit(&[sky, sun, spot]);

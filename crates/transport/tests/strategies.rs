@@ -11,9 +11,10 @@ use caustica_math::elementary::sin;
 use caustica_math::stats::{Moments, sidak, student_t_test};
 use caustica_math::{Rgb, Transform, Vec2};
 use caustica_scene::Description;
-use caustica_scene::description::{CameraKind, Integrator, MaterialKind, Technique};
+use caustica_scene::description::{CameraKind, Integrator, MaterialId, MaterialKind, Technique};
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{diffuse, emit, glass, point_light, sphere};
+use caustica_testkit::materials::{blend, checks, mask, thin_glass, two_sided};
 use caustica_testkit::scenes::{furnace, glass_kind, point_furnace};
 use caustica_testkit::seed::seed;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink, Strategy};
@@ -252,6 +253,28 @@ fn furnaces_with_balls() {
     for (name, kind) in [("mirror", mirror), ("glass", glass_kind(false)), ("bubble", glass_kind(true))] {
         whole(name, with(kind), (140, 0.005), &[NAIVE, EMITTERS, PATH, Integrator::Bdpt]);
     }
+    let made = |make: &dyn Fn(&mut Description) -> MaterialId| {
+        let mut d = furnace();
+        let m = make(&mut d);
+        sphere(&mut d, [0.1, 0.2, -0.4], 0.35, m);
+        d
+    };
+    let white = |d: &mut Description| diffuse(d, 1.0);
+    let all = &[NAIVE, EMITTERS, PATH, Integrator::Bdpt];
+    whole("nothing", made(&|d| d.add_material(MaterialKind::Null)), (140, 0.005), all);
+    whole("thin glass", made(&|d| d.add_material(thin_glass())), (140, 0.005), all);
+    let masked = |d: &mut Description| {
+        let white = white(d);
+        let both = two_sided(d, white, white);
+        mask(d, checks(3.0, [0.2, 0.9]), both)
+    };
+    whole("mask", made(&masked), (300, 0.005), all);
+    let frosted = |d: &mut Description| {
+        let (clear, white) = (glass(d), white(d));
+        let both = two_sided(d, white, white);
+        blend(d, checks(3.0, [0.3, 0.7]), [clear, both])
+    };
+    whole("blend", made(&frosted), (300, 0.005), all);
     // One in the other.
     let mut nested = with(glass_kind(false));
     let water = nested.add_material(MaterialKind::Dielectric { interior_ior: 1.33, exterior_ior: 1.5 });

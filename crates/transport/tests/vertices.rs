@@ -12,7 +12,7 @@ fn arrival(scene: &Scene, inside: bool) -> Vertex {
     let origin = Vec3::new(0.1, 0.2, if inside { 0.0 } else { -3.0 });
     let ray = Ray { origin, direction: Vec3::Z, t_max: f32::INFINITY };
     let point = scene.closest(&ray).expect("the ball");
-    Vertex::new(scene, point, -Vec3::Z, Wavelengths::Rgb)
+    Vertex::new(scene, point, -Vec3::Z, Wavelengths::Rgb, || 0.5)
 }
 
 fn ball(material: impl Fn(&mut Description) -> caustica_scene::description::MaterialId) -> Scene {

@@ -6,7 +6,7 @@ use zune_core::colorspace::ColorSpace;
 use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 
-use super::{Fault, Pixels, Room, srgb};
+use super::{Fault, Pixels, Room};
 
 /// The most pixels to a bit. Every block of 8 × 8 has a code of at least one bit, and with sampling factors of up
 /// to 4 some component has a block for every 16 of the full grid.
@@ -32,7 +32,7 @@ pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, Fault> {
     if data.len() != count * channels || !matches!(channels, 1 | 3) {
         return Err("its colours are stored in a way that is not supported".into());
     }
-    let table = srgb::table(255);
+    let table = room.codes.table(255);
     let value = |p: &[u8], i: usize| table[usize::from(p[i])];
     let pixels = data
         .chunks_exact(channels)

@@ -41,24 +41,44 @@ pub fn read_image(path: &Path) -> Result<ReadImage, Diagnostic> {
 
 /// The same in so much memory. An image that would take more is refused when its size is known, before it is decoded.
 pub fn read_image_within(path: &Path, memory: MemoryLimit) -> Result<ReadImage, Diagnostic> {
-    read_within(path, MOST_PIXELS, memory)
+    read_within(path, (MOST_PIXELS, Codes::Srgb), memory)
 }
 
 /// The same of the bytes of a file; `file_name` is for messages.
 pub fn decode_image(bytes: &[u8], file_name: &str) -> Result<ReadImage, Diagnostic> {
-    let room = Room { file: bytes.len() as u64, pixels: MOST_PIXELS, memory: MemoryLimit::Machine };
+    let (pixels, memory) = (MOST_PIXELS, MemoryLimit::Machine);
+    let room = Room { file: bytes.len() as u64, pixels, memory, codes: Codes::Srgb };
     decode_within(bytes, file_name, room)
+}
+
+/// What the codes of PNG and JPEG files are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Codes {
+    /// Colours by sRGB's curve.
+    Srgb,
+    /// Values from 0 to 1.
+    Raw,
+}
+
+impl Codes {
+    /// The linear values of all codes up to `largest`.
+    fn table(self, largest: u16) -> Vec<f32> {
+        match self {
+            Self::Srgb => srgb::table(largest),
+            Self::Raw => (0..=largest).map(|code| f32::from(code) / f32::from(largest)).collect(),
+        }
+    }
 }
 
 /// Reads an image of at most so many pixels.
 pub(crate) fn read_within(
     path: &Path,
-    most_pixels: u64,
+    (most_pixels, codes): (u64, Codes),
     memory: MemoryLimit,
 ) -> Result<ReadImage, Diagnostic> {
     let name = path.display().to_string();
     let bytes = files::read(path, LARGEST_FILE).map_err(|why| cannot_read(&name, why.into()))?;
-    let room = Room { file: bytes.len() as u64, pixels: most_pixels.min(MOST_PIXELS), memory };
+    let room = Room { file: bytes.len() as u64, pixels: most_pixels.min(MOST_PIXELS), memory, codes };
     decode_within(&bytes, &name, room)
 }
 
@@ -133,6 +153,8 @@ struct Room {
     pixels: u64,
     /// What there is for it.
     memory: MemoryLimit,
+    /// How it is read.
+    codes: Codes,
 }
 
 impl Room {

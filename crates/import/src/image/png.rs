@@ -5,7 +5,7 @@ use std::io::Cursor;
 use caustica_math::Rgb;
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
-use super::{Fault, Pixels, Room, srgb};
+use super::{Fault, Pixels, Room};
 
 /// Deflate cannot shrink data by more than this factor.
 const BEST_COMPRESSION: u64 = 1032;
@@ -32,12 +32,12 @@ pub(super) fn decode(bytes: &[u8], room: Room) -> Result<Pixels, Fault> {
     let data = &buffer[..frame.buffer_size()];
     let pixels = match frame.bit_depth {
         BitDepth::Sixteen => {
-            let table = srgb::table(u16::MAX);
+            let table = room.codes.table(u16::MAX);
             let value = |p: &[u8], i: usize| table[usize::from(u16::from_be_bytes([p[2 * i], p[2 * i + 1]]))];
             data.chunks_exact(2 * channels).map(|p| rgb(channels, |i| value(p, i))).collect()
         }
         _ => {
-            let table = srgb::table(255);
+            let table = room.codes.table(255);
             data.chunks_exact(channels).map(|p| rgb(channels, |i| table[usize::from(p[i])])).collect()
         }
     };

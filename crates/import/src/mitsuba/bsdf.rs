@@ -2,17 +2,29 @@
 
 use caustica_math::Rgb;
 use caustica_scene::Diagnostic;
-use caustica_scene::description::{MaterialId, MaterialKind};
+use caustica_scene::description::{MaterialId, MaterialKind, Texture};
 
 use super::class::Class;
 use super::context::Context;
 use super::fields::Fields;
 use super::spectrum::Role;
-use super::{ior, texture};
+use super::{ior, texture, wrapper};
 use crate::nori::range::Bounds;
 
-const BSDFS: &[&str] =
-    &["diffuse", "dielectric", "roughdielectric", "conductor", "roughconductor", "twosided"];
+const BSDFS: &[&str] = &[
+    "diffuse",
+    "dielectric",
+    "thindielectric",
+    "roughdielectric",
+    "conductor",
+    "roughconductor",
+    "null",
+    "twosided",
+    "mask",
+    "blendbsdf",
+    "bumpmap",
+    "normalmap",
+];
 
 /// What has no material of its own yet, and the property whose colour it is shown in.
 const SHOWN_DIFFUSE: &[(&str, &str)] = &[
@@ -29,8 +41,6 @@ const SHOWN_DIFFUSE: &[(&str, &str)] = &[
     ("hair", ""),
     ("measured", ""),
     ("measured_polarized", ""),
-    ("thindielectric", ""),
-    ("null", ""),
     ("polarizer", ""),
     ("retarder", ""),
     ("circular", ""),
@@ -38,8 +48,7 @@ const SHOWN_DIFFUSE: &[(&str, &str)] = &[
 ];
 
 /// What changes another material and is left out so far, so that the inner one is shown.
-const WRAPPERS: &[&str] =
-    &["mask", "bumpmap", "normalmap", "bump", "blendbsdf", "mixturebsdf", "coating", "roughcoating"];
+const SHOWN_INNER: &[&str] = &["bump", "mixturebsdf", "coating", "roughcoating"];
 
 /// The material of an object, read once.
 pub(super) fn read(index: usize, cx: &mut Context) -> Result<MaterialId, Diagnostic> {
@@ -59,11 +68,9 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<MaterialId, Diagnos
     Ok(id)
 }
 
-/// The material inside of one that changes it.
+/// The material inside of one that changes it and is left out.
 fn inner(fields: &mut Fields, cx: &mut Context) -> Result<Option<MaterialId>, Diagnostic> {
-    let plugin = fields.plugin();
-    let is_wrapper = WRAPPERS.contains(&plugin);
-    if !is_wrapper && plugin != "twosided" {
+    if !SHOWN_INNER.contains(&fields.plugin()) {
         return Ok(None);
     }
     let children = fields.children(Class::Bsdf);
@@ -71,24 +78,28 @@ fn inner(fields: &mut Fields, cx: &mut Context) -> Result<Option<MaterialId>, Di
         return Err(fields.error(format!("the {} needs a bsdf inside of it", fields.title())));
     };
     let id = read(*first, cx)?;
-    let title = fields.title();
-    if is_wrapper {
-        // One warning says it all.
-        fields.take_rest();
-        fields.warn(format!("the {title} is not supported yet; shown as the bsdf inside of it"));
-    } else if !is_two_sided(&cx.description.materials[id.0 as usize].kind) {
-        fields.warn(format!("the {title} is not supported yet; its back is black"));
-    }
+    // One warning says it all.
+    fields.take_rest();
+    fields.warn(format!("the {} is not supported yet; shown as the bsdf inside of it", fields.title()));
     Ok(Some(id))
 }
 
-/// Whether both sides scatter.
-fn is_two_sided(kind: &MaterialKind) -> bool {
-    matches!(kind, MaterialKind::Dielectric { .. } | MaterialKind::RoughDielectric { .. })
-}
-
 fn kind(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnostic> {
+    if let Some(wrapper) = wrapper::read(fields, cx)? {
+        return Ok(MaterialKind::Wrapped(wrapper));
+    }
     Ok(match fields.plugin() {
+        "null" => MaterialKind::Null,
+        "thindielectric" => {
+            let (interior_ior, exterior_ior) = iors(fields)?;
+            let mut factor = |name| -> Result<Texture, Diagnostic> {
+                let found = texture::slot(fields, name, Role::Reflectance, cx)?;
+                Ok(found.unwrap_or(Rgb::WHITE.into()))
+            };
+            let (reflectance, transmittance) =
+                (factor("specular_reflectance")?, factor("specular_transmittance")?);
+            MaterialKind::ThinDielectric { interior_ior, exterior_ior, reflectance, transmittance }
+        }
         "diffuse" => {
             let albedo = texture::slot(fields, "reflectance", Role::Reflectance, cx)?;
             MaterialKind::Diffuse { albedo: albedo.unwrap_or(Rgb::splat(0.5).into()) }
@@ -120,7 +131,7 @@ fn kind(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnosti
 fn shown_diffuse(plugin: &str, fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnostic> {
     let Some((_, color)) = SHOWN_DIFFUSE.iter().find(|(name, _)| *name == plugin) else {
         let names: Vec<&str> =
-            BSDFS.iter().chain(WRAPPERS).copied().chain(SHOWN_DIFFUSE.iter().map(|(n, _)| *n)).collect();
+            BSDFS.iter().chain(SHOWN_INNER).copied().chain(SHOWN_DIFFUSE.iter().map(|(n, _)| *n)).collect();
         return Err(fields.unknown_plugin(&names));
     };
     let albedo = match *color {

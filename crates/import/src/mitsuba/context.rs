@@ -11,6 +11,7 @@ use caustica_scene::{Description, Diagnostic, Origin};
 use super::paths::Paths;
 use super::tree::Tree;
 use crate::files::{Limits, take};
+use crate::image::Codes;
 use crate::{image, obj, ply};
 
 /// The most warnings that are kept: more of them help nobody.
@@ -31,7 +32,7 @@ pub(super) struct Context<'c> {
     /// Sensors in shapes: the place of each in the tree, and of its shape in the description.
     pub(super) meters: Vec<(usize, u32)>,
     meshes: BTreeMap<PathBuf, Mesh>,
-    images: BTreeMap<PathBuf, ImageId>,
+    images: BTreeMap<(PathBuf, Codes), ImageId>,
     /// The materials of objects of the tree.
     pub(super) materials: BTreeMap<usize, MaterialId>,
     /// Of shapes that are no lamps, and of lamps.
@@ -122,16 +123,27 @@ impl<'c> Context<'c> {
 
     /// The image of a file that is named at `origin`.
     pub(super) fn image(&mut self, file: &str, origin: &Origin) -> Result<ImageId, Diagnostic> {
-        let path = self.path("image", file, origin)?;
-        if let Some(id) = self.images.get(&path) {
+        self.image_of(file, Codes::Srgb, origin)
+    }
+
+    /// The same, told what its codes are.
+    pub(super) fn image_of(
+        &mut self,
+        file: &str,
+        codes: Codes,
+        origin: &Origin,
+    ) -> Result<ImageId, Diagnostic> {
+        let key = (self.path("image", file, origin)?, codes);
+        if let Some(id) = self.images.get(&key) {
             return Ok(*id);
         }
         let placed = |e: Diagnostic| if e.origin.is_some() { e } else { e.at(Some(origin.clone())) };
-        let read = image::read_within(&path, self.left.pixels, self.paths.folder.memory).map_err(placed)?;
+        let read = image::read_within(&key.0, (self.left.pixels, codes), self.paths.folder.memory)
+            .map_err(placed)?;
         self.left.pixels -= read.image.pixels.len() as u64;
         read.warnings.into_iter().for_each(|w| self.push(placed(w)));
         let id = self.description.add_image(read.image);
-        self.images.insert(path, id);
+        self.images.insert(key, id);
         Ok(id)
     }
 

@@ -295,6 +295,11 @@ impl<'t> Fields<'t> {
         found.last().map(|(_, index)| *index)
     }
 
+    /// The texture inside of this one, whatever its name.
+    pub(super) fn any_texture(&mut self) -> Option<usize> {
+        self.take(|_, object| object.class == Class::Texture).last().map(|(_, index)| *index)
+    }
+
     fn take(&mut self, wanted: impl Fn(&Child, &Object) -> bool) -> Vec<(&'t Child, usize)> {
         let mut found = Vec::new();
         for ((child, index), taken) in self.tree.children(self.object).zip(&mut self.taken) {

@@ -26,6 +26,7 @@ mod transform;
 mod tree;
 mod upgrade;
 mod value;
+mod wrapper;
 
 use caustica_scene::Diagnostic;
 

@@ -5,12 +5,13 @@
 
 use caustica_math::{Rgb, Transform, Vec3};
 use caustica_scene::Diagnostic;
-use caustica_scene::description::{Texture, TextureTransform};
+use caustica_scene::description::{PixelLookup, Texture, TextureTransform, Wrap};
 
 use super::context::Context;
 use super::fields::Fields;
 use super::spectrum::{Curve, Role};
 use super::tree::Value;
+use crate::image::Codes;
 use crate::nori::range::Bounds;
 
 const TEXTURES: &[&str] =
@@ -68,7 +69,7 @@ fn mean(pixels: &[Rgb]) -> Rgb {
     Rgb(sum.map(|s| (s / pixels.len() as f64) as f32))
 }
 
-fn read(index: usize, role: Role, cx: &mut Context) -> Result<Texture, Diagnostic> {
+pub(super) fn read(index: usize, role: Role, cx: &mut Context) -> Result<Texture, Diagnostic> {
     let mut fields = Fields::new(cx.tree, index);
     let texture = match fields.plugin() {
         "bitmap" => bitmap(&mut fields, cx)?,
@@ -103,54 +104,74 @@ fn one(fields: &mut Fields, name: &'static str, role: Role) -> Result<Rgb, Diagn
 
 fn bitmap(fields: &mut Fields, cx: &mut Context) -> Result<Texture, Diagnostic> {
     let (file, property) = fields.file_name()?;
-    let image = cx.image(file, &property.value_origin)?;
-    let [scale, offset] = to_uv(fields)?;
-    if let Some((mode, p)) = fields.choice("wrap_mode", &["repeat", "mirror", "clamp"])?
-        && mode != "repeat"
-    {
-        fields.warn_at(
-            format!("the wrap mode `{mode}` is not supported yet; the image repeats"),
-            &p.value_origin,
-        );
-    }
-    if let Some((mode, p)) = fields.choice("filter_type", &["bilinear", "nearest", "trilinear", "ewa"])?
-        && mode != "bilinear"
-    {
-        fields.warn_at(format!("the filter `{mode}` is not supported yet; it is bilinear"), &p.value_origin);
-    }
-    if fields.boolean("raw", false)? {
-        fields.warn("`raw` is not supported yet; PNG and JPEG are taken as sRGB");
-    }
+    let codes = if fields.boolean("raw", false)? { Codes::Raw } else { Codes::Srgb };
+    let image = cx.image_of(file, codes, &property.value_origin)?;
+    let ToUv { u, v } = to_uv(fields)?;
+    let wrap = match fields.choice("wrap_mode", &["repeat", "mirror", "clamp"])? {
+        Some(("mirror", _)) => Wrap::Mirror,
+        Some(("clamp", _)) => Wrap::Clamp,
+        _ => Wrap::Repeat,
+    };
+    let filter = match fields.choice("filter_type", &["bilinear", "nearest", "trilinear", "ewa"])? {
+        Some(("nearest", _)) => PixelLookup::Nearest,
+        Some((mode @ ("trilinear" | "ewa"), p)) => {
+            let message = format!("there is no filter `{mode}` any more; it is bilinear");
+            fields.warn_at(message, &p.value_origin);
+            PixelLookup::Bilinear
+        }
+        _ => PixelLookup::Bilinear,
+    };
     fields.ignore(&["format", "accel", "cache", "max_anisotropy"]);
     fields.unsupported(&["gamma", "channel"]);
-    // The row at v′ = v·scale + offset from the upper edge, by 1 − v.
-    let transform = TextureTransform { scale, offset: [offset[0], 1.0 - scale[1] - offset[1]] };
+    // The place is u′ and v′ from the upper edge, by 1 − v.
+    let transform = TextureTransform {
+        scale: [u[0], v[1]],
+        shear: [-u[1], -v[0]],
+        offset: [u[2] + u[1], 1.0 - v[1] - v[2]],
+        wrap,
+        filter,
+    };
     Ok(Texture::Image { image, transform })
 }
 
 fn checkerboard(fields: &mut Fields, role: Role, cx: &mut Context) -> Result<Texture, Diagnostic> {
     let value1 = constant(fields, "color0", role, cx)?.unwrap_or(Rgb::splat(0.4));
     let value2 = constant(fields, "color1", role, cx)?.unwrap_or(Rgb::splat(0.2));
-    let [s, o] = to_uv(fields)?;
-    // A field is half a unit of u′ = u·s + o; v is 1 − v here.
+    let ToUv { mut u, mut v } = to_uv(fields)?;
+    if u[0] == 0.0 || v[1] == 0.0 {
+        // Both count alike, and not both can be so.
+        std::mem::swap(&mut u, &mut v);
+    }
+    // A field is half a unit of u′ and v′; v is 1 − v here.
     Ok(Texture::Checkerboard {
-        scale: [0.5 / s[0], -0.5 / s[1]],
-        delta: [-2.0 * o[0], -2.0 * (s[1] + o[1])],
+        scale: [0.5 / u[0], -0.5 / v[1]],
+        shear: [-2.0 * u[1], 2.0 * v[0]],
+        delta: [-2.0 * (u[1] + u[2]), -2.0 * (v[1] + v[2])],
         value1,
         value2,
     })
 }
 
-/// Scale and offset of texture coordinates.
-fn to_uv(fields: &mut Fields) -> Result<[[f32; 2]; 2], Diagnostic> {
+/// Where texture coordinates are taken: u′ = u[0]·u + u[1]·v + u[2], and v′ likewise.
+struct ToUv {
+    u: [f32; 3],
+    v: [f32; 3],
+}
+
+fn to_uv(fields: &mut Fields) -> Result<ToUv, Diagnostic> {
     let transform = fields.transform("to_uv")?;
-    let (u, v) = (transform.vector(Vec3::X), transform.vector(Vec3::Y));
+    let (x, y) = (transform.vector(Vec3::X), transform.vector(Vec3::Y));
     let offset = translation(&transform);
-    if u.y.abs() + v.x.abs() > 1e-6 * (u.x.abs() + v.y.abs()) || u.x == 0.0 || v.y == 0.0 {
-        fields.warn("`to_uv` may only scale and move so far; it is left out");
-        return Ok([[1.0; 2], [0.0; 2]]);
+    let size = (x.x.abs() + y.x.abs()) * (x.y.abs() + y.y.abs());
+    if (x.x * y.y - x.y * y.x).abs() <= 1e-6 * size {
+        fields.warn("`to_uv` cannot be inverted; it is left out");
+        return Ok(ToUv { u: [1.0, 0.0, 0.0], v: [0.0, 1.0, 0.0] });
     }
-    Ok([[u.x, v.y], offset])
+    // What a rotation by a right angle leaves of the cosine is nothing.
+    let exact = |c: f32, other: f32| if c.abs() <= 1e-7 * other.abs() { 0.0 } else { c };
+    let u = [exact(x.x, y.x), exact(y.x, x.x), offset[0]];
+    let v = [exact(x.y, y.y), exact(y.y, x.y), offset[1]];
+    Ok(ToUv { u, v })
 }
 
 /// How far coordinates are moved: by the fourth column, or by the third of a 3 × 3 matrix.

@@ -10,6 +10,7 @@ use caustica_scene::{Description, Diagnostic, Origin};
 
 use super::tree::Place;
 use crate::files::{Folder, Limits, Trust, take};
+use crate::image::Codes;
 use crate::suggest::shorten;
 use crate::{image, obj};
 
@@ -116,7 +117,7 @@ impl<'c> Context<'c> {
         if let Some(id) = self.images.get(&path) {
             return Ok(*id);
         }
-        let read = image::read_within(&path, self.left.pixels, self.folder.memory)
+        let read = image::read_within(&path, (self.left.pixels, Codes::Srgb), self.folder.memory)
             .map_err(|e| self.place_if_unplaced(e, range))?;
         self.left.pixels -= read.image.pixels.len() as u64;
         for warning in read.warnings {

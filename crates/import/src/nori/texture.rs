@@ -39,14 +39,17 @@ fn read(object: &Object, radiometry: Radiometry, cx: &mut Context) -> Result<Tex
             let scale = scale(&mut fields)?;
             let value1 = fields.color(&["value1"], radiometry)?.unwrap_or(Rgb::BLACK);
             let value2 = fields.color(&["value2"], radiometry)?.unwrap_or(Rgb::WHITE);
-            Texture::Checkerboard { delta, scale, value1, value2 }
+            Texture::Checkerboard { delta, scale, shear: [0.0; 2], value1, value2 }
         }
         "image_texture" => {
             let (file, property) = fields.file_name()?;
             let image = cx.image(file, &property.value_range)?;
             let scale = scale(&mut fields)?;
             let offset = fields.pair(&["offset", "delta"])?.map_or([0.0; 2], |(offset, _)| offset);
-            Texture::Image { image, transform: TextureTransform { scale, offset } }
+            Texture::Image {
+                image,
+                transform: TextureTransform { scale, offset, ..TextureTransform::default() },
+            }
         }
         _ => return Err(fields.unknown_plugin(TEXTURES)),
     };

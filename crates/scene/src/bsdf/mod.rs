@@ -4,6 +4,7 @@
 //! Evaluation is in the one physical orientation, as light travels: from where `to_light` points, out to
 //! where `to_camera` points, whichever walk asks.
 
+pub mod bump;
 pub mod conductor;
 pub mod diffuse;
 pub mod fresnel;
@@ -12,16 +13,20 @@ pub mod metals;
 pub mod microfacet;
 pub mod rough_dielectric;
 pub mod specular;
+pub mod thin;
 
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3};
 
+pub use bump::Bump;
 pub use conductor::{Conductor, RoughConductor};
 pub use diffuse::Diffuse;
 pub use microfacet::Microfacet;
 pub use rough_dielectric::RoughDielectric;
 pub use specular::Dielectric;
+pub use thin::ThinDielectric;
 
 use specular::sample_mirror;
+use thin::sample_null;
 
 /// The direction in which a path is being traced. (Light itself always travels to the camera.)
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +89,10 @@ pub enum Bsdf {
     RoughConductor(RoughConductor),
     /// Nori's plastic.
     Microfacet(Microfacet),
+    /// A thin sheet of glass.
+    ThinDielectric(ThinDielectric),
+    /// No surface at all.
+    Null,
 }
 
 // One lies in every path vertex: a cache line and no more.
@@ -98,7 +107,11 @@ impl Bsdf {
             Self::RoughDielectric(b) => b.eval(to_light, to_camera),
             Self::RoughConductor(b) => b.eval(to_light, to_camera),
             Self::Microfacet(b) => b.eval(to_light, to_camera),
-            Self::Mirror { .. } | Self::Dielectric(_) | Self::Conductor(_) => Evaluated::default(),
+            Self::Mirror { .. }
+            | Self::Dielectric(_)
+            | Self::Conductor(_)
+            | Self::ThinDielectric(_)
+            | Self::Null => Evaluated::default(),
         }
     }
 
@@ -112,6 +125,8 @@ impl Bsdf {
             Self::Mirror { reflectance } => return lit(sample_mirror(*reflectance, given)?),
             Self::Conductor(b) => return lit(b.sample(given)?),
             Self::Dielectric(b) => return lit(b.sample(walk, given, u)?),
+            Self::ThinDielectric(b) => return lit(b.sample(given, u)?),
+            Self::Null => return Some(sample_null(given)),
             Self::RoughDielectric(b) if b.is_matched() => return lit(b.sample_matched(walk, given, u)?),
             Self::Diffuse(b) => b.sample_direction(given, u),
             Self::RoughDielectric(b) => b.sample_direction(given, u),
@@ -140,7 +155,11 @@ impl Bsdf {
     #[inline]
     pub fn is_delta(&self) -> bool {
         match self {
-            Self::Mirror { .. } | Self::Dielectric(_) | Self::Conductor(_) => true,
+            Self::Mirror { .. }
+            | Self::Dielectric(_)
+            | Self::Conductor(_)
+            | Self::ThinDielectric(_)
+            | Self::Null => true,
             Self::RoughDielectric(b) => b.is_matched(),
             Self::Diffuse(_) | Self::RoughConductor(_) | Self::Microfacet(_) => false,
         }
@@ -150,8 +169,15 @@ impl Bsdf {
     #[inline]
     pub fn has_lobes(&self) -> bool {
         match self {
-            Self::Dielectric(_) | Self::RoughDielectric(_) | Self::Microfacet(_) => true,
-            Self::Diffuse(_) | Self::Mirror { .. } | Self::Conductor(_) | Self::RoughConductor(_) => false,
+            Self::Dielectric(_)
+            | Self::RoughDielectric(_)
+            | Self::Microfacet(_)
+            | Self::ThinDielectric(_) => true,
+            Self::Diffuse(_)
+            | Self::Mirror { .. }
+            | Self::Conductor(_)
+            | Self::RoughConductor(_)
+            | Self::Null => false,
         }
     }
 
@@ -171,11 +197,17 @@ impl Bsdf {
         ratio * ratio
     }
 
+    /// Whether it has an inside, which is another medium than what is around.
+    #[inline]
+    pub fn bounds_a_medium(&self) -> bool {
+        matches!(self, Self::Dielectric(_) | Self::RoughDielectric(_))
+    }
+
     /// Whether light can pass from one side to the other.
     #[inline]
     pub fn transmits(&self) -> bool {
         match self {
-            Self::Dielectric(_) | Self::RoughDielectric(_) => true,
+            Self::Dielectric(_) | Self::RoughDielectric(_) | Self::ThinDielectric(_) | Self::Null => true,
             Self::Diffuse(_)
             | Self::Mirror { .. }
             | Self::Conductor(_)

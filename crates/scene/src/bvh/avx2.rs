@@ -3,7 +3,7 @@
 
 use std::arch::x86_64::*;
 
-use super::lanes::Lanes;
+use super::lanes::{Eight, Lanes};
 use super::traverse::{any_hit, first_hit};
 use super::{Bvh, Hit, Ray};
 
@@ -45,10 +45,10 @@ impl Lanes for Avx {
         Self(unsafe { _mm256_loadu_ps(v.as_ptr()) })
     }
     #[inline(always)]
-    fn store(self) -> [f32; 8] {
-        let mut v = [0.0; 8];
-        // SAFETY: see `Avx`; the array has eight elements, and need not be aligned.
-        unsafe { _mm256_storeu_ps(v.as_mut_ptr(), self.0) };
+    fn store(self) -> Eight {
+        let mut v = Eight([0.0; 8]);
+        // SAFETY: see `Avx`; the array has eight elements and is aligned.
+        unsafe { _mm256_store_ps(v.0.as_mut_ptr(), self.0) };
         v
     }
     #[inline(always)]
@@ -96,4 +96,29 @@ impl Lanes for Avx {
         // SAFETY: see `Avx`.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GT_OQ>(self.0, o.0)) as u32 }
     }
+    #[inline(always)]
+    fn packed(values: &[u32; 8], mask: u32) -> [u32; 8] {
+        let mut packed = [0; 8];
+        // SAFETY: see `Avx`; all three have eight elements, and need not be aligned.
+        unsafe {
+            let values = _mm256_loadu_si256(values.as_ptr().cast());
+            let order = _mm256_cvtepu8_epi32(_mm_loadl_epi64(ORDERS[mask as usize & 255].as_ptr().cast()));
+            _mm256_storeu_si256(packed.as_mut_ptr().cast(), _mm256_permutevar8x32_epi32(values, order));
+        }
+        packed
+    }
 }
+
+/// For each mask the lanes whose bits are set.
+static ORDERS: [[u8; 8]; 256] = {
+    let mut orders = [[0; 8]; 256];
+    let mut i = 0;
+    while i < 256 * 8 {
+        let (mask, lane) = (i / 8, i % 8);
+        if mask >> lane & 1 == 1 {
+            orders[mask][(mask & ((1 << lane) - 1)).count_ones() as usize] = lane as u8;
+        }
+        i += 1;
+    }
+    orders
+};

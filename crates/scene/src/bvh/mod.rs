@@ -7,6 +7,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod build;
 mod lanes;
 mod pages;
@@ -104,7 +106,7 @@ impl Bounds {
 struct Node {
     /// Lower x, y, z, then upper x, y, z.
     bounds: [[f32; WIDTH]; 6],
-    /// The largest first.
+    /// The largest last.
     children: [Child; WIDTH],
     padding: [u32; WIDTH],
 }
@@ -169,6 +171,32 @@ pub enum TreeQuality {
     Spatial,
 }
 
+/// What code walks a tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kernels {
+    Portable,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Kernels {
+    /// All that this CPU can run, the best first.
+    fn available() -> impl Iterator<Item = Self> {
+        #[cfg(target_arch = "x86_64")]
+        let special =
+            [avx512::is_available().then_some(Self::Avx512), avx2::is_available().then_some(Self::Avx2)];
+        #[cfg(not(target_arch = "x86_64"))]
+        let special = [];
+        special.into_iter().flatten().chain([Self::Portable])
+    }
+
+    fn best() -> Self {
+        Self::available().next().unwrap_or(Self::Portable)
+    }
+}
+
 /// The tree.
 #[derive(Debug)]
 pub struct Bvh {
@@ -178,8 +206,9 @@ pub struct Bvh {
     /// Where every ray begins: the first node, or nothing.
     root: Child,
     bounds: Bounds,
-    /// Whether the CPU has AVX2.
-    avx2: bool,
+    kernels: Kernels,
+    /// Whether it is larger than what CPUs keep near by.
+    is_large: bool,
 }
 
 impl Bvh {
@@ -202,7 +231,7 @@ impl Bvh {
     /// The same tree, walked as on CPUs without AVX2. Rays hit the same things; tests see that they do.
     #[must_use]
     pub fn portable(self) -> Self {
-        Self { avx2: false, ..self }
+        Self { kernels: Kernels::Portable, ..self }
     }
 
     /// The box around everything.
@@ -219,24 +248,30 @@ impl Bvh {
     #[inline]
     #[cfg_attr(target_arch = "x86_64", expect(unsafe_code))]
     pub fn closest(&self, ray: &Ray) -> Option<Hit> {
-        #[cfg(target_arch = "x86_64")]
-        if self.avx2 {
+        match self.kernels {
             // SAFETY: the CPU has what the function needs.
-            return unsafe { avx2::closest(self, ray) };
+            #[cfg(target_arch = "x86_64")]
+            Kernels::Avx512 => unsafe { avx512::closest(self, ray) },
+            // SAFETY: the CPU has what the function needs.
+            #[cfg(target_arch = "x86_64")]
+            Kernels::Avx2 => unsafe { avx2::closest(self, ray) },
+            Kernels::Portable => traverse::closest(self, ray),
         }
-        traverse::closest(self, ray)
     }
 
     /// Whether the ray hits anything.
     #[inline]
     #[cfg_attr(target_arch = "x86_64", expect(unsafe_code))]
     pub fn occluded(&self, ray: &Ray) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        if self.avx2 {
+        match self.kernels {
             // SAFETY: the CPU has what the function needs.
-            return unsafe { avx2::occluded(self, ray) };
+            #[cfg(target_arch = "x86_64")]
+            Kernels::Avx512 => unsafe { avx512::occluded(self, ray) },
+            // SAFETY: the CPU has what the function needs.
+            #[cfg(target_arch = "x86_64")]
+            Kernels::Avx2 => unsafe { avx2::occluded(self, ray) },
+            Kernels::Portable => traverse::occluded(self, ray),
         }
-        traverse::occluded(self, ray)
     }
 }
 
@@ -263,12 +298,13 @@ mod tests {
         Bvh::new(&positions, &triangles, &spheres)
     }
 
-    /// Both kinds of lanes give the same bits.
+    /// All kinds of lanes give the same bits.
     #[test]
     fn hits_do_not_depend_on_the_cpu() {
         let mut s = SampleStream::new(StreamId { seed: 1, pixel: 2, sample: 3, walk: 4 });
         let mut tree = heap(&mut s);
-        if !tree.avx2 {
+        let all: Vec<_> = Kernels::available().collect();
+        if all.len() < 2 {
             println!("skipped: this CPU has one kind only");
             return;
         }
@@ -281,12 +317,12 @@ mod tests {
             let [x, y, z, u, v, w] = coordinates;
             let t_max = if i % 7 == 0 { 1.0 } else { f32::INFINITY };
             let ray = Ray { origin: Vec3::new(x, y, z), direction: Vec3::new(u, v, w), t_max };
-            let found = [tree.avx2, false].map(|avx2| {
-                tree.avx2 = avx2;
+            let found = all.iter().map(|kernels| {
+                tree.kernels = *kernels;
                 (tree.closest(&ray), tree.occluded(&ray))
             });
-            tree.avx2 = true;
-            assert_eq!(found[0], found[1], "{ray:?}");
+            let found: Vec<_> = found.collect();
+            assert!(found.iter().all(|f| *f == found[0]), "{ray:?}: {found:?}");
             hits += usize::from(found[0].1);
         }
         assert!(hits > rays / 4 && hits < rays, "{hits} of {rays} rays hit");

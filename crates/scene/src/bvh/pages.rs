@@ -1,4 +1,5 @@
 //! Memory for tables that rays jump about in.
+#![allow(unsafe_code)]
 
 use std::fmt;
 use std::ops::{Deref, DerefMut};
@@ -14,14 +15,16 @@ pub(super) enum Pages<T> {
 }
 
 /// Tables of fewer bytes have few pages anyway.
-const LARGE: usize = 8 << 20;
+const LARGE: usize = 1 << 20;
+/// The size of a large page on most systems: the end of a table is to lie in one, too.
+const PAGE: usize = 2 << 20;
 
 impl<T: Pod> Pages<T> {
     /// A table of zeros.
     pub(super) fn zeroed(len: usize) -> Self {
         let bytes = len * size_of::<T>();
         if bytes >= LARGE
-            && let Ok(map) = MmapMut::map_anon(bytes)
+            && let Ok(map) = MmapMut::map_anon(bytes.next_multiple_of(PAGE))
         {
             // A system that knows no large pages, or has none left, gives small ones.
             #[cfg(target_os = "linux")]
@@ -39,7 +42,9 @@ impl<T: Pod> Deref for Pages<T> {
     fn deref(&self) -> &[T] {
         match self {
             Self::Small(table) => table,
-            Self::Large(map, len) => bytemuck::cast_slice(&map[..len * size_of::<T>()]),
+            // SAFETY: the map has that many elements, of a type for which all bits will do, from the beginning of a
+            // page. (`bytemuck` would check it again for every ray.)
+            Self::Large(map, len) => unsafe { std::slice::from_raw_parts(map.as_ptr().cast(), *len) },
         }
     }
 }

@@ -8,6 +8,8 @@ use super::lanes::Lanes;
 
 /// A ray made ready for box tests and for Woop's triangle test. `PARALLEL` says that a component of its direction
 /// is zero or almost.
+///
+/// All that has three parts is by the axes as the ray sees them: the last is the one along which it moves most.
 pub(super) struct LaneRay<L, const PARALLEL: bool> {
     /// As it was given.
     source: Ray,
@@ -17,12 +19,21 @@ pub(super) struct LaneRay<L, const PARALLEL: bool> {
     inverse: [L; 3],
     /// `inverse`, times [`FAR`].
     far_inverse: [L; 3],
-    /// For each axis where the row of planes begins that are entered first, and of those that are left.
-    near: [usize; 3],
-    far: [usize; 3],
-    /// The axes permuted so that z is the largest of the direction, and the shear that makes it the z axis.
-    axes: [usize; 3],
-    shear: [L; 3],
+    /// The shear that makes the ray the last axis.
+    shear: [L; 2],
+    /// Where to find what.
+    rows: Rows,
+}
+
+/// Where rows of coordinates begin.
+#[derive(Clone, Copy)]
+struct Rows {
+    /// The planes of eight boxes that are entered first, and those that are left.
+    near: [u8; 3],
+    far: [u8; 3],
+    /// The coordinates of eight points.
+    points: [u8; 3],
+    axes: [u8; 3],
 }
 
 /// The far planes are pushed out by this factor, which covers the rounding of the slab test and of the
@@ -37,19 +48,29 @@ pub(super) fn is_parallel(ray: &Ray) -> bool {
     f32x4::new([x, y, z, 1.0]).abs().simd_lt(f32x4::splat(f32::MIN_POSITIVE)).to_bitmask() != 0
 }
 
-/// The x and y axes for each z axis, for directions along it and against it.
-const PERMUTATIONS: [[[usize; 2]; 2]; 3] = [[[1, 2], [2, 1]], [[2, 0], [0, 2]], [[0, 1], [1, 0]]];
-
-/// Where the rows of planes begin that are entered first and those that are left, for directions by the signs of
-/// their components.
-const ROWS: [[[usize; 3]; 2]; 8] = {
-    let mut rows = [[[0; 3]; 2]; 8];
+/// The rows for directions that are largest along each axis, by the signs of their components.
+const ROWS: [[Rows; 8]; 3] = {
+    let mut rows = [[Rows { near: [0; 3], far: [0; 3], points: [0; 3], axes: [0; 3] }; 8]; 3];
     let mut i = 0;
     while i < 24 {
-        let (signs, axis) = (i / 3, i % 3);
-        let backward = signs >> axis & 1;
-        rows[signs][0][axis] = 8 * (axis + 3 * backward);
-        rows[signs][1][axis] = 8 * (axis + 3 - 3 * backward);
+        let (z, signs) = (i / 8, i % 8);
+        let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
+        if signs >> z & 1 == 1 {
+            // So that it stays right-handed.
+            (x, y) = (y, x);
+        }
+        let axes = [x, y, z];
+        let mut n = 0;
+        while n < 3 {
+            let axis = axes[n];
+            let backward = signs >> axis & 1;
+            let of = &mut rows[z][signs];
+            of.axes[n] = axis as u8;
+            of.points[n] = 8 * axis as u8;
+            of.near[n] = 8 * (axis + 3 * backward) as u8;
+            of.far[n] = 8 * (axis + 3 - 3 * backward) as u8;
+            n += 1;
+        }
         i += 1;
     }
     rows
@@ -71,27 +92,26 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
                 }
             }
         }
-        let inverse = f32x4::splat(1.0) / f32x4::new([divisor[0], divisor[1], divisor[2], 1.0]);
-        let signs = inverse.simd_lt(f32x4::ZERO).to_bitmask() as usize & 7;
+        let divisor = f32x4::new([divisor[0], divisor[1], divisor[2], 1.0]);
+        let inverse = f32x4::splat(1.0) / divisor;
         let far_inverse = (inverse * f32x4::splat(FAR)).to_array();
         let inverse = inverse.to_array();
-        let [near, far] = ROWS[signs];
         // Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
-        let size = [d[0].abs(), d[1].abs(), d[2].abs()];
-        let larger = usize::from(size[0] <= size[1]);
-        let z = if size[larger] > size[2] { larger } else { 2 };
-        let [x, y] = PERMUTATIONS[z][signs >> z & 1];
-        let along = inverse[z];
+        let [x, y, z] = d.map(f32::abs);
+        let larger = if x > y { x } else { y };
+        let largest = if larger > z { usize::from(x <= y) } else { 2 };
+        let rows = &ROWS[largest][divisor.to_bitmask() as usize & 7];
+        let pick = |v: [f32; 3]| rows.axes.map(|axis| [v[0], v[1], v[2], 0.0][axis as usize & 3]);
+        let d = pick(d);
+        let inverse = pick([inverse[0], inverse[1], inverse[2]]);
         Self {
             source: *ray,
-            origin: splat(o),
-            far_origin: splat(far_origin),
-            inverse: splat([inverse[0], inverse[1], inverse[2]]),
-            far_inverse: splat([far_inverse[0], far_inverse[1], far_inverse[2]]),
-            near,
-            far,
-            axes: [x, y, z],
-            shear: splat([d[x] * along, d[y] * along, along]),
+            origin: splat(pick(o)),
+            far_origin: splat(pick(far_origin)),
+            inverse: splat(inverse),
+            far_inverse: splat(pick([far_inverse[0], far_inverse[1], far_inverse[2]])),
+            shear: [L::splat(d[0] * inverse[2]), L::splat(d[1] * inverse[2])],
+            rows: *rows,
         }
     }
 
@@ -109,12 +129,12 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
 
     #[inline(always)]
     fn near(&self, boxes: &[[f32; 8]; 6], axis: usize) -> L {
-        row::<L>(boxes, self.near[axis]).sub(self.origin[axis]).mul(self.inverse[axis])
+        row::<L, 6>(boxes, self.rows.near[axis]).sub(self.origin[axis]).mul(self.inverse[axis])
     }
 
     #[inline(always)]
     fn far(&self, boxes: &[[f32; 8]; 6], axis: usize) -> L {
-        row::<L>(boxes, self.far[axis]).sub(self.left_from(axis)).mul(self.far_inverse[axis])
+        row::<L, 6>(boxes, self.rows.far[axis]).sub(self.left_from(axis)).mul(self.far_inverse[axis])
     }
 
     /// Where the ray starts for planes that are left.
@@ -130,9 +150,12 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     pub(super) fn enter_triangles(&self, corners: &[[[f32; 8]; 3]; 3], t_max: L) -> (u32, L) {
         let (mut t_near, mut t_far) = (L::splat(0.0), t_max);
         for axis in 0..3 {
-            let a = L::load(&corners[0][axis]);
-            let b = L::load(&corners[1][axis]);
-            let c = L::load(&corners[2][axis]);
+            let first = self.rows.points[axis];
+            let (a, b, c) = (
+                row::<L, 3>(&corners[0], first),
+                row::<L, 3>(&corners[1], first),
+                row::<L, 3>(&corners[2], first),
+            );
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             let (origin, inverse) = (self.origin[axis], self.inverse[axis]);
             t_near = t_near.max(low.sub(origin).mul(inverse).min(high.sub(origin).mul(inverse)));
@@ -145,11 +168,16 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     /// Points as the ray sees them, looking along z.
     #[inline(always)]
     pub(super) fn shear(&self, points: &[[f32; 8]; 3]) -> [L; 3] {
-        let [kx, ky, kz] = self.axes;
-        let z = L::load(&points[kz]).sub(self.origin[kz]);
-        let x = L::load(&points[kx]).sub(self.origin[kx]).sub(self.shear[0].mul(z));
-        let y = L::load(&points[ky]).sub(self.origin[ky]).sub(self.shear[1].mul(z));
+        let z = self.offset(points, 2);
+        let x = self.offset(points, 0).sub(self.shear[0].mul(z));
+        let y = self.offset(points, 1).sub(self.shear[1].mul(z));
         [x, y, z]
+    }
+
+    /// How far along an axis points are from the ray's origin.
+    #[inline(always)]
+    fn offset(&self, points: &[[f32; 8]; 3], axis: usize) -> L {
+        row::<L, 3>(points, self.rows.points[axis]).sub(self.origin[axis])
     }
 
     /// The ray as it was given.
@@ -161,7 +189,7 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     /// One over the direction along z.
     #[inline(always)]
     pub(super) fn along(&self) -> L {
-        self.shear[2]
+        self.inverse[2]
     }
 }
 
@@ -170,10 +198,10 @@ fn splat<L: Lanes>(v: [f32; 3]) -> [L; 3] {
     [L::splat(v[0]), L::splat(v[1]), L::splat(v[2])]
 }
 
-/// The row of planes that begins with that number.
+/// The row of numbers that begins with that one.
 #[inline(always)]
-fn row<L: Lanes>(boxes: &[[f32; 8]; 6], first: usize) -> L {
-    debug_assert!(first.is_multiple_of(8) && first < 48);
-    // SAFETY: `first` is one of 0, 8, … 40, and the array has 48 numbers.
-    L::load(unsafe { &*boxes.as_ptr().cast::<f32>().add(first).cast::<[f32; 8]>() })
+fn row<L: Lanes, const N: usize>(rows: &[[f32; 8]; N], first: u8) -> L {
+    debug_assert!(first.is_multiple_of(8) && usize::from(first) < 8 * N);
+    // SAFETY: `first` is one of 0, 8, 16 … up to the last row.
+    L::load(unsafe { &*rows.as_ptr().cast::<f32>().add(first.into()).cast::<[f32; 8]>() })
 }

@@ -13,6 +13,8 @@ use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
 const STACK: usize = (WIDTH - 1) * MAX_DEPTH + 1;
+/// Room for a whole node's children to be written at once.
+const SLACK: usize = WIDTH;
 
 /// The first hit along the ray, by lanes that every CPU has.
 pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
@@ -25,12 +27,12 @@ pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
 }
 
 /// What waits to be visited. Clearing it for every ray would cost more than many a ray.
-struct Stack<T>([MaybeUninit<T>; STACK]);
+struct Stack<T>([MaybeUninit<T>; STACK + SLACK]);
 
 impl<T: Copy> Stack<T> {
     #[inline(always)]
     fn new() -> Self {
-        Self([const { MaybeUninit::uninit() }; STACK])
+        Self([const { MaybeUninit::uninit() }; STACK + SLACK])
     }
 
     /// Writes entry `at`.
@@ -43,6 +45,17 @@ impl<T: Copy> Stack<T> {
         debug_assert!(at < STACK);
         // SAFETY: as the caller promises.
         unsafe { self.0.get_unchecked_mut(at) }.write(value);
+    }
+
+    /// Writes several entries from `at` on, of which some may count.
+    ///
+    /// # Safety
+    /// As of [`Stack::write`], for those that count.
+    #[inline(always)]
+    unsafe fn write_all(&mut self, at: usize, values: [T; WIDTH]) {
+        debug_assert!(at < STACK);
+        // SAFETY: there is room for all where the first may be written.
+        unsafe { self.0.as_mut_ptr().add(at).cast::<[T; WIDTH]>().write(values) };
     }
 
     /// Reads entry `at`.
@@ -73,6 +86,22 @@ fn distance_of(key: u64) -> f32 {
     f32::from_bits((key >> 32) as u32)
 }
 
+/// Asks for what a child is to be there soon.
+#[inline(always)]
+fn prefetch(nodes: &[Node], blocks: &[TriangleBlock], child: Child) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let node = nodes.as_ptr().wrapping_add(child.0 as usize & (Child::LEAF as usize - 1)).cast::<i8>();
+        let block = blocks.as_ptr().wrapping_add((child.0 & Child::INDEX) as usize).cast::<i8>();
+        let first = if child.is_leaf() { block } else { node };
+        for line in 0..5 {
+            // SAFETY: no harm comes of any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(64 * line)) };
+        }
+    }
+}
+
 /// The first hit along the ray.
 #[inline(always)]
 pub(super) fn first_hit<L: Lanes>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
@@ -100,12 +129,13 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
                 current = node.children[first];
                 continue;
             }
-            let distances = t_near.store();
+            let distances = t_near.store().0;
             // SAFETY: at most `WIDTH - 1` children wait.
-            unsafe { waiting = push_sorted(&mut stack, waiting, mask, node, &distances) };
-            waiting -= 1;
-            // SAFETY: the nearest has just been written.
-            current = child_of(unsafe { stack.read(waiting) });
+            (current, waiting) = unsafe { push_sorted(&mut stack, waiting, mask, node, &distances) };
+            if bvh.is_large {
+                // SAFETY: at least one waits.
+                prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 1) }));
+            }
         }
         if current.is_leaf() {
             test_leaf((bvh, blocks), current, ray, &lanes, &mut best);
@@ -119,13 +149,21 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             let key = unsafe { stack.read(waiting) };
             if distance_of(key) <= best.t {
                 current = child_of(key);
+                if bvh.is_large && waiting > 0 {
+                    // SAFETY: what waits has been written.
+                    prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 1) }));
+                    if waiting > 1 {
+                        prefetch(nodes, blocks, child_of(unsafe { stack.read(waiting - 2) }));
+                    }
+                }
                 break;
             }
         }
     }
 }
 
-/// Puts the children in `mask`, which are two or more, on the stack, the nearest on top. Returns the new height.
+/// Puts the children in `mask`, which are two or more, on the stack, all but the nearest. Returns that and the new
+/// height.
 ///
 /// # Safety
 /// As of [`Stack::write`], for all children.
@@ -136,7 +174,7 @@ unsafe fn push_sorted(
     mask: u32,
     node: &Node,
     distances: &[f32; WIDTH],
-) -> usize {
+) -> (Child, usize) {
     let of = |lane: usize| key(distances[lane], node.children[lane]);
     let (a, rest) = (of(lane(mask)), mask & mask.wrapping_sub(1));
     let (b, rest) = (of(lane(rest)), rest & rest.wrapping_sub(1));
@@ -145,14 +183,16 @@ unsafe fn push_sorted(
     unsafe {
         if rest == 0 {
             stack.write(bottom, b);
-            stack.write(bottom + 1, a);
-            return bottom + 2;
+            return (child_of(a), bottom + 1);
         }
         let (c, mut rest) = (of(lane(rest)), rest & rest.wrapping_sub(1));
         let (a, c) = (a.min(c), a.max(c));
         let (b, c) = (b.min(c), b.max(c));
         stack.write(bottom, c);
         stack.write(bottom + 1, b);
+        if rest == 0 {
+            return (child_of(a), bottom + 2);
+        }
         stack.write(bottom + 2, a);
         let mut top = bottom + 3;
         while rest != 0 {
@@ -166,7 +206,7 @@ unsafe fn push_sorted(
             stack.write(at, new);
             top += 1;
         }
-        top
+        (child_of(stack.read(top - 1)), top - 1)
     }
 }
 
@@ -186,7 +226,8 @@ fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>) -> Opti
         return Some(Hit { t, primitive, b1: 0.0, b2: 0.0, corners: [Vec3::ZERO; 3] });
     }
     let lane = best.place % BLOCK;
-    let (v, w, det) = (best.edges[0].store()[lane], best.edges[1].store()[lane], best.det.store()[lane]);
+    let (v, w, det) =
+        (best.edges[0].store().0[lane], best.edges[1].store().0[lane], best.det.store().0[lane]);
     // SAFETY: the place is where a triangle was hit.
     let corners = unsafe { blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
     let [b1, b2] = if det == 0.0 { barycentrics(ray, corners) } else { [v / det, w / det] };
@@ -245,19 +286,19 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
         while !current.is_leaf() {
             // SAFETY: children that are no leaves are indices of nodes.
             let node = unsafe { nodes.get_unchecked(current.0 as usize) };
-            let (mut mask, _) = lanes.enter(&node.bounds, t_max);
+            let (mask, _) = lanes.enter(&node.bounds, t_max);
             if mask == 0 {
                 break;
             }
-            // The largest is the first, and is visited first.
-            current = node.children[lane(mask)];
-            mask &= mask.wrapping_sub(1);
-            while mask != 0 {
-                let last = (31 - mask.leading_zeros()) as usize & (WIDTH - 1);
-                mask ^= 1 << last;
-                // SAFETY: all children but one wait.
-                unsafe { stack.write(waiting, node.children[last]) };
-                waiting += 1;
+            // The largest is the last, and is visited first.
+            let last = (31 - mask.leading_zeros()) as usize & (WIDTH - 1);
+            let others = mask ^ 1 << last;
+            current = node.children[last];
+            // SAFETY: all children but one wait.
+            unsafe { stack.write_all(waiting, L::packed(bytemuck::cast_ref(&node.children), others)) };
+            waiting += others.count_ones() as usize;
+            if bvh.is_large && others != 0 {
+                prefetch(nodes, blocks, node.children[31 - others.leading_zeros() as usize]);
             }
         }
         if current.is_leaf() && is_hit((bvh, blocks), current, ray, &lanes) {
@@ -267,8 +308,12 @@ fn any_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> bool {
             return false;
         }
         waiting -= 1;
+        if bvh.is_large && waiting > 0 {
+            // SAFETY: what waits has been written.
+            prefetch(nodes, blocks, Child(unsafe { stack.read(waiting - 1) }));
+        }
         // SAFETY: what waits has been written.
-        current = unsafe { stack.read(waiting) };
+        current = Child(unsafe { stack.read(waiting) });
     }
 }
 

@@ -65,6 +65,13 @@ fn size<L: Lanes>(v: L) -> L {
     v.max(L::splat(0.0).sub(v))
 }
 
+/// The largest absolute value of three, and some more. (No closure: LLVM would not inline that into functions with
+/// AVX2.)
+#[inline(always)]
+fn reach<L: Lanes>([a, b, c]: [L; 3], more: L) -> L {
+    size(a).max(size(b)).max(size(c)).add(more)
+}
+
 /// Where a ray meets a triangle's plane; not a number or infinite where it runs along it.
 fn plane_distance(ray: &Ray, corners: [Vec3; 3]) -> f32 {
     let [a, b, c] = corners;
@@ -132,14 +139,12 @@ impl TriangleBlock {
         let depth = u.mul(az).add(v.mul(bz)).add(w.mul(cz));
         let mut t = ray.along().mul(depth).div(det);
         let spread = az.max(bz).max(cz).sub(az.min(bz).min(cz));
-        let near = inside & size(depth).le(size(det).mul(spread));
-        if near != 0 {
-            let reach = |a: L, b: L, c: L| size(a).max(size(b)).max(size(c)).add(spread);
-            let square = reach(ax, bx, cx).mul(reach(ay, by, cy));
-            let unsure = near & size(det).mul(L::splat(THIN)).le(square);
-            if unsure != 0 {
-                t = L::load(&self.refined(ray.source(), unsure, t.store()));
-            }
+        let square = reach([ax, bx, cx], spread).mul(reach([ay, by, cy], spread));
+        let (depth, det_size) = (size(depth), size(det));
+        // Both at once: few are, but half of all rays begin on a triangle and are near.
+        let unsure = inside & depth.le(det_size.mul(spread)) & det_size.mul(L::splat(THIN)).le(square);
+        if unsure != 0 {
+            t = L::load(&self.refined(ray.source(), unsure, t.store().0));
         }
         let t_max = L::splat(t_max);
         let hit = inside & t.gt(zero) & t.le(t_max);
@@ -194,7 +199,7 @@ impl TriangleBlock {
         best: &mut Best<L>,
     ) {
         let Some(Crossings { mut mask, t, edges, det }) = self.test(ray, best.t) else { return };
-        let ts = t.store();
+        let ts = t.store().0;
         let mut winner = None;
         while mask != 0 {
             let lane = mask.trailing_zeros() as usize;

@@ -3,6 +3,7 @@ use std::sync::Arc;
 use caustica_math::Rgb;
 use serde::{Deserialize, Serialize};
 
+use super::Wrapper;
 use crate::Origin;
 
 /// The index of an image in [`super::Description::images`].
@@ -29,19 +30,21 @@ pub struct Image {
 pub enum Texture {
     /// The same everywhere.
     Constant(Rgb),
-    /// Two colours by the parity of floor(u/scale.x − delta.x) + floor(v/scale.y − delta.y); even is
-    /// `value1`.
+    /// Two colours by the parity of floor(u/scale.x + v·shear.x − delta.x) + floor(v/scale.y + u·shear.y − delta.y);
+    /// even is `value1`.
     Checkerboard {
         /// Offset.
         delta: [f32; 2],
         /// Size of a field, not 0.
         scale: [f32; 2],
+        /// What the other coordinate adds.
+        shear: [f32; 2],
         /// Colour of the even fields.
         value1: Rgb,
         /// Colour of the odd fields.
         value2: Rgb,
     },
-    /// An image, repeated, bilinear, with v = 0 at its lower edge.
+    /// An image, with v = 0 at its lower edge.
     Image {
         /// The image.
         image: ImageId,
@@ -56,19 +59,48 @@ impl From<Rgb> for Texture {
     }
 }
 
-/// uv · scale + offset, before the look-up.
+/// How an image lies on a surface: at (u·scale.x + v·shear.x + offset.x, v·scale.y + u·shear.y + offset.y).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TextureTransform {
     /// Factor on u and v.
     pub scale: [f32; 2],
-    /// Added after scaling.
+    /// What the other coordinate adds.
+    pub shear: [f32; 2],
+    /// Added to both.
     pub offset: [f32; 2],
+    /// What lies beyond its edges.
+    pub wrap: Wrap,
+    /// What lies between its pixels.
+    pub filter: PixelLookup,
 }
 
 impl Default for TextureTransform {
     fn default() -> Self {
-        Self { scale: [1.0; 2], offset: [0.0; 2] }
+        let (wrap, filter) = (Wrap::default(), PixelLookup::default());
+        Self { scale: [1.0; 2], shear: [0.0; 2], offset: [0.0; 2], wrap, filter }
     }
+}
+
+/// What lies beyond the edges of an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// Its mirror image, and then the image again.
+    Mirror,
+    /// What is at the edge.
+    Clamp,
+}
+
+/// What lies between the pixels of an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PixelLookup {
+    /// A mean of four.
+    #[default]
+    Bilinear,
+    /// The nearest.
+    Nearest,
 }
 
 /// A material.
@@ -142,4 +174,37 @@ pub enum MaterialKind {
         /// Diffuse reflectance.
         kd: Texture,
     },
+    /// A thin sheet of glass, through which light passes straight.
+    ThinDielectric {
+        /// Index of refraction of the sheet.
+        interior_ior: f32,
+        /// Index of refraction around it.
+        exterior_ior: f32,
+        /// Factor on what it reflects.
+        reflectance: Texture,
+        /// Factor on what it lets through.
+        transmittance: Texture,
+    },
+    /// No surface at all: light passes straight through. It counts as a bounce, and casts a shadow where lamps are
+    /// looked for.
+    Null,
+    /// Made of other materials.
+    Wrapped(Wrapper),
+}
+
+impl MaterialKind {
+    /// All textures that the material itself looks up.
+    pub fn textures(&self) -> Vec<&Texture> {
+        match self {
+            Self::Diffuse { albedo: t } | Self::Microfacet { kd: t, .. } => vec![t],
+            Self::ThinDielectric { reflectance, transmittance, .. } => vec![reflectance, transmittance],
+            Self::Wrapped(wrapper) => wrapper.texture().into_iter().collect(),
+            Self::Mirror { .. }
+            | Self::Dielectric { .. }
+            | Self::RoughDielectric { .. }
+            | Self::Conductor { .. }
+            | Self::RoughConductor { .. }
+            | Self::Null => Vec::new(),
+        }
+    }
 }

@@ -16,6 +16,7 @@ mod integrator;
 mod light;
 mod material;
 mod shape;
+mod wrapper;
 
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +24,11 @@ pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
 pub use integrator::{Integrator, Technique};
 pub use light::{Light, LightKind};
-pub use material::{Image, ImageId, Material, MaterialId, MaterialKind, Texture, TextureTransform};
+pub use material::{
+    Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,
+};
 pub use shape::{Geometry, Mesh, Shape};
+pub use wrapper::{BumpRule, Wrapper};
 
 /// A whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

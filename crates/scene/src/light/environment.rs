@@ -4,8 +4,8 @@ use caustica_math::elementary::{atan2, sin, sin_cos, sin_cos_turns};
 use caustica_math::{Distribution2d, Rgb, SolidAnglePdf, Spectrum, Vec3, warp};
 
 use super::Surroundings;
-use crate::description::Image;
-use crate::texture::{Wrap, bilinear};
+use crate::description::{Image, Wrap};
+use crate::texture::bilinear;
 
 /// Light from everywhere: constant, or an equirectangular map.
 #[derive(Debug)]
@@ -120,7 +120,7 @@ impl EnvironmentLight {
             Self::Map(map) => {
                 let [x, y] = direction_to_square(map.local(towards));
                 let image = &around.textures.images[map.image as usize];
-                let rgb: Rgb = bilinear(image, x, y, Wrap::Clamp) * map.scale;
+                let rgb: Rgb = bilinear(image, x, y, [Wrap::Repeat, Wrap::Clamp]) * map.scale;
                 around.wavelengths.spectrum(rgb)
             }
         }

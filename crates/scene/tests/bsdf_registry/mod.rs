@@ -5,7 +5,8 @@
 
 use caustica_math::{Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 use caustica_scene::bsdf::{
-    Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric, Walk, metals,
+    Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric, ThinDielectric, Walk,
+    metals,
 };
 use caustica_testkit::seed::seed;
 
@@ -84,7 +85,14 @@ fn examples_after(previous: Option<&Bsdf>) -> Vec<Example> {
                 opaque(&format!("microfacet {alpha}"), Bsdf::Microfacet(bsdf))
             })
             .collect(),
-        Some(Bsdf::Microfacet(_)) => vec![],
+        Some(Bsdf::Microfacet(_)) => glass()
+            .map(|indices| {
+                let bsdf = ThinDielectric::new(indices, Spectrum::ONE, Spectrum::ONE);
+                opaque(&format!("thin glass {indices:?}"), Bsdf::ThinDielectric(bsdf))
+            })
+            .collect(),
+        Some(Bsdf::ThinDielectric(_)) => vec![opaque("null", Bsdf::Null)],
+        Some(Bsdf::Null) => vec![],
     }
 }
 

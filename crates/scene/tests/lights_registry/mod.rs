@@ -121,6 +121,7 @@ fn spheres() -> Vec<Example> {
     let halves = Texture::Checkerboard {
         delta: [0.0; 2],
         scale: [9.0, 0.5],
+        shear: [0.0; 2],
         value1: COLOUR,
         value2: Rgb([COLOUR.0[0] * 0.1, COLOUR.0[1] * 0.1, COLOUR.0[2] * 0.1]),
     };

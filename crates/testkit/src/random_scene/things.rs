@@ -136,6 +136,7 @@ fn texture(of_light: bool, choices: &mut Choices) -> Texture {
         2 => Texture::Checkerboard {
             delta: [choices.signed(), choices.signed()],
             scale: [0.01 + choices.unit(), -0.01 - choices.unit()],
+            shear: [0.0; 2],
             value1: colour(choices),
             value2: colour(choices),
         },
@@ -144,6 +145,7 @@ fn texture(of_light: bool, choices: &mut Choices) -> Texture {
             transform: TextureTransform {
                 scale: [3.0 * choices.signed(), 1.0],
                 offset: [choices.signed(), 0.0],
+                ..TextureTransform::default()
             },
         },
     }

@@ -76,8 +76,9 @@ impl Kernel<'_> {
                         h.of(share * lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
                     }
                 };
+                let share = if t > 2 { self.walk_share(&sample.eye.vertices[..t - 2]) } else { 1.0 };
                 let further = h.of(pdf.point.0 * pdf.direction.0 * end.sums.past);
-                weight(0.0, one_less + further)
+                share * weight(0.0, one_less + further)
             },
             sink,
         )

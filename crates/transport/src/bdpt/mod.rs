@@ -1,5 +1,6 @@
 //! Bidirectional path tracing: all strategies of one sample.
 
+mod aimed;
 mod candidate;
 mod connection;
 mod exhaustive;
@@ -100,7 +101,7 @@ impl Kernel<'_> {
         } else {
             None
         };
-        let Scratch { eye, light, densities, weights, candidates } = scratch;
+        let Scratch { eye, light, densities, weights, candidates, aimed } = scratch;
         for failed in [eye.failed, light.failed] {
             if failed {
                 sink.invalid();
@@ -112,6 +113,7 @@ impl Kernel<'_> {
         let mut sum = Spectrum::ZERO;
         if classes.hit {
             sum += self.hits(&sample, sink);
+            sum += self.aimed_hits(&sample, (&mut numbers, aimed), sink);
         }
         candidates.clear();
         if classes.next_event {
@@ -179,6 +181,9 @@ impl Kernel<'_> {
         let mut weights = sample.weights.borrow_mut();
         if S::WEIGHS_ALL {
             self.all_weights(sample, joined, &mut weights);
+            if s == 0 && t > 2 {
+                weights[0] *= self.walk_share(&eye[..t - 2]);
+            }
         } else {
             weights.clear();
         }

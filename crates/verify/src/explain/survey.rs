@@ -159,10 +159,10 @@ impl Survey {
             views.empty += 1;
             return;
         };
-        let behind = first.point.normal.dot(first.prev) < 0.0;
-        let glass = first.bsdf.transmits();
+        let behind = first.side(first.prev) < 0.0;
+        let glass = first.bsdf.bounds_a_medium();
         let lamp = scene.lamp_at(&first.point).is_some();
-        views.behind += u64::from(behind && !glass && !lamp);
+        views.behind += u64::from(behind && !first.bsdf.transmits() && !lamp);
         views.inside_glass += u64::from(behind && glass);
         let shines = lamp && !scene.emitted(&first.point, first.prev, Wavelengths::Rgb).is_black();
         let ends = paths.eye.len() == 1 && paths.escape.is_none();

@@ -31,11 +31,12 @@ pub fn shape_words(scene: &Scene, names: &[String], shape: u32) -> String {
     let name = names.get(shape as usize).map_or("?", String::as_str);
     let flat = &scene.surfaces().shapes[shape as usize];
     let primitive = flat.first_primitive;
-    let kind = match scene.surfaces().sphere(primitive) {
+    let point = match scene.surfaces().sphere(primitive) {
         Some(_) => scene.surfaces().sphere_point(primitive, caustica_math::Vec3::X),
         None => scene.surfaces().triangle_point(primitive, 0.3, 0.3),
     };
-    let kind = match scene.bsdf(&kind, caustica_math::Wavelengths::Rgb) {
+    // Of a mixture one part, as good as any.
+    let kind = match scene.placed(&point, point.normal, 0.0, caustica_math::Wavelengths::Rgb).bsdf {
         Bsdf::Dielectric(_) => "smooth glass",
         Bsdf::Mirror { .. } => "mirror",
         Bsdf::Conductor(_) => "smooth metal",

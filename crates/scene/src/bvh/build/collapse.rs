@@ -12,7 +12,7 @@ use super::reference::Reference;
 
 /// Expected time of a node and of a leaf's block or sphere, by measurement.
 const NODE_COST: f32 = 1.0;
-const BLOCK_COST: f32 = 0.4;
+const BLOCK_COST: f32 = 0.25;
 const SPHERE_COST: f32 = 0.15;
 /// Most blocks or spheres of a leaf.
 const LEAF_BLOCKS: usize = 4;
@@ -212,7 +212,7 @@ impl<'a> Flat<'a> {
             children[1].roots(WIDTH - left, &mut roots);
         }
         // Stable: equal ones stay in order.
-        roots.sort_by(|a, b| b.bounds.half_area().total_cmp(&a.bounds.half_area()));
+        roots.sort_by(|a, b| a.bounds.half_area().total_cmp(&b.bounds.half_area()));
         let index = self.nodes.len();
         self.nodes.push(EMPTY_NODE);
         for (lane, root) in roots.into_iter().enumerate() {

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::pages::Pages;
 use super::sphere::SphereData;
 use super::triangle::TriangleBlock;
-use super::{Bounds, Bvh, Child, TreeQuality};
+use super::{Bounds, Bvh, Child, Kernels, TreeQuality};
 use collapse::{Flat, NO_TRIANGLE};
 use reference::{Extents, Reference};
 use spatial::Spatial;
@@ -22,6 +22,9 @@ use split::{Place, Splitter};
 /// The deepest that a tree gets. Past [`split::SAH_DEPTH`] binary levels the ranges are halved at the
 /// median, which adds at most 27 more.
 pub(super) const MAX_DEPTH: usize = split::SAH_DEPTH + 28;
+
+/// Bytes of a tree past which what waits is asked for beforehand.
+const LARGE: usize = 16 << 20;
 
 /// What the tree is built over.
 pub(super) struct Primitives<'a> {
@@ -56,17 +59,14 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
     let mut references = primitives.references();
     let count = references.len();
     let extent = Extents::of(&references).boxes;
-    #[cfg(target_arch = "x86_64")]
-    let avx2 = super::avx2::is_available();
-    #[cfg(not(target_arch = "x86_64"))]
-    let avx2 = false;
     let mut bvh = Bvh {
         nodes: Pages::zeroed(0),
         blocks: Pages::zeroed(0),
         spheres: Vec::new(),
         root: Child::NONE,
         bounds: extent.bounds(),
-        avx2,
+        kernels: Kernels::best(),
+        is_large: false,
     };
     if references.is_empty() {
         return bvh;
@@ -94,5 +94,6 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
         let used = ids.into_iter().filter(|id| *id != NO_TRIANGLE);
         *block = TriangleBlock::new(used.map(|id| (id, primitives.corners(id))));
     });
+    bvh.is_large = bvh.memory() > LARGE;
     bvh
 }

@@ -1,0 +1,71 @@
+//! Materials made of others, for the scenes of tests.
+
+use caustica_math::Rgb;
+use caustica_scene::Description;
+use caustica_scene::description::{
+    BumpRule, Image, MaterialId, MaterialKind, Texture, TextureTransform, Wrapper,
+};
+
+use crate::build::{diffuse, glass};
+
+/// A checkerboard of two greys, so many fields wide.
+pub fn checks(fields: f32, greys: [f32; 2]) -> Texture {
+    let [value1, value2] = greys.map(Rgb::splat);
+    Texture::Checkerboard { delta: [0.2; 2], scale: [1.0 / fields; 2], shear: [0.0; 2], value1, value2 }
+}
+
+fn wrapped(d: &mut Description, wrapper: Wrapper) -> MaterialId {
+    d.add_material(MaterialKind::Wrapped(wrapper))
+}
+
+/// A material with holes.
+pub fn mask(d: &mut Description, opacity: Texture, inner: MaterialId) -> MaterialId {
+    wrapped(d, Wrapper::Mask { opacity, inner })
+}
+
+/// Two materials, the second with that share.
+pub fn blend(d: &mut Description, weight: impl Into<Texture>, inner: [MaterialId; 2]) -> MaterialId {
+    wrapped(d, Wrapper::Blend { weight: weight.into(), inner })
+}
+
+/// A material for either side.
+pub fn two_sided(d: &mut Description, front: MaterialId, back: MaterialId) -> MaterialId {
+    wrapped(d, Wrapper::TwoSided { front, back })
+}
+
+/// Waves of that height on a material.
+pub fn bump(d: &mut Description, scale: f32, rule: BumpRule, inner: MaterialId) -> MaterialId {
+    let pixels = (0..64).map(|i| Rgb::splat((i * i * 7 % 13) as f32 / 13.0)).collect();
+    let image = d.add_image(Image { width: 8, height: 8, pixels });
+    let height = Texture::Image { image, transform: TextureTransform::default() };
+    wrapped(d, Wrapper::Bump { height, scale, rule, inner })
+}
+
+/// Normals that lean by that much to all sides.
+pub fn normal_map(d: &mut Description, lean: f32, rule: BumpRule, inner: MaterialId) -> MaterialId {
+    let side = |i: u32, k: u32| 0.5 + 0.5 * lean * ((i * k % 11) as f32 / 5.0 - 1.0);
+    let pixels = (0..64).map(|i| Rgb::new(side(i, 3), side(i, 7), 0.9)).collect();
+    let image = d.add_image(Image { width: 8, height: 8, pixels });
+    let normals = Texture::Image { image, transform: TextureTransform::default() };
+    wrapped(d, Wrapper::NormalMap { normals, rule, inner })
+}
+
+/// Thin glass.
+pub fn thin_glass() -> MaterialKind {
+    let (reflectance, transmittance) = (Rgb::WHITE.into(), Rgb::WHITE.into());
+    MaterialKind::ThinDielectric { interior_ior: 1.5, exterior_ior: 1.0, reflectance, transmittance }
+}
+
+/// Leaves, green on both sides, between gaps.
+pub fn leaves(d: &mut Description) -> MaterialId {
+    let green = d.add_material(MaterialKind::Diffuse { albedo: Rgb::new(0.2, 0.6, 0.1).into() });
+    let dark = diffuse(d, 0.3);
+    let both = two_sided(d, green, dark);
+    mask(d, checks(4.0, [0.2, 0.9]), both)
+}
+
+/// Here clear glass and there a diffuse surface.
+pub fn frosted(d: &mut Description) -> MaterialId {
+    let (clear, white) = (glass(d), diffuse(d, 0.8));
+    blend(d, checks(3.0, [0.3, 0.7]), [clear, white])
+}
