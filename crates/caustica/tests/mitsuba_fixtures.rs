@@ -5,9 +5,9 @@
 
 use std::path::{Path, PathBuf};
 
-use caustica::description::{Image, Integrator, LightKind};
+use caustica::description::Integrator;
 use caustica::import::load;
-use caustica::{Description, RenderOptions, Rgb, Scene, Session, Settings};
+use caustica::{RenderOptions, Rgb, Scene, Session, Settings};
 
 const SEEDS: u64 = 32;
 const REFERENCE_SAMPLES: f64 = 32_000.0;
@@ -48,33 +48,10 @@ fn reference(path: &Path) -> Picture {
     Picture { width, pixels }
 }
 
-/// Places the rows of an environment as Mitsuba does: the first and the last lie on the poles there, and half a row from
-/// them here. All rows are made again from the two that they lie between, finer so that this blurs little.
-fn place_rows(description: &mut Description) {
-    const FINER: usize = 8;
-    for light in &description.lights {
-        let LightKind::Environment { image, .. } = light.kind else { continue };
-        let old = &description.images[image.0 as usize];
-        let (width, height) = (old.width as usize, old.height as usize);
-        let row = |r: usize| &old.pixels[r * width..][..width];
-        let mut pixels = Vec::with_capacity(width * height * FINER);
-        for r in 0..height * FINER {
-            let at = (r as f32 + 0.5) / (height * FINER) as f32 * (height - 1) as f32;
-            let upper = (at as usize).min(height - 2);
-            let t = at - upper as f32;
-            let pairs = row(upper).iter().zip(row(upper + 1));
-            pixels.extend(pairs.map(|(a, b)| *a * (1.0 - t) + *b * t));
-        }
-        let height = (height * FINER) as u32;
-        description.images[image.0 as usize] = Image { height, pixels: pixels.into(), ..*old };
-    }
-}
-
 /// The scene's picture by some seeds, with so many samples each.
 fn render(path: &Path, samples: u32, integrator: Option<Integrator>) -> Vec<Vec<[f64; 3]>> {
     let loaded = load(path).unwrap_or_else(|e| panic!("{e}"));
-    let mut description = loaded.scene.unwrap();
-    place_rows(&mut description);
+    let description = loaded.scene.unwrap();
     let integrator = integrator.unwrap_or(description.integrator);
     let (scene, _) = Scene::new(description).unwrap();
     let one = |seed| {

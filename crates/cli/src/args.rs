@@ -73,6 +73,21 @@ impl Arguments {
             Command::Develop(_) => Voice { json: false, quiet: false },
         }
     }
+
+    /// How many threads may work, if that is said.
+    pub fn threads(&self) -> Option<usize> {
+        let threads = match &self.command {
+            Command::Render(a) => a.source.threads,
+            Command::Compare(a) => a.source.threads,
+            Command::Pyramid(a) => a.source.threads,
+            Command::Video(a) => a.clip().source.threads,
+            Command::Verify(a) => a.source.threads,
+            Command::Explain(a) => a.source.threads,
+            Command::Test(a) => a.threads,
+            Command::Info(_) | Command::Merge(_) | Command::Develop(_) => None,
+        };
+        threads.map(usize::from)
+    }
 }
 
 /// What is rendered, and on what.
@@ -118,6 +133,9 @@ impl Length {
     }
 }
 
+/// The most samples per pixel of `verify` and `explain`: there is a reference with twice as many, rounded up.
+const MOST_LOOKED_AT: i64 = 1 << 26;
+
 /// How to speak.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Voice {
@@ -137,6 +155,9 @@ pub struct Render {
     /// OUTPUT.film, only that: a film that can be merged and developed
     #[arg(short, long)]
     pub output: Option<PathBuf>,
+    /// Replace a film also if its samples are lost by that
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub length: Length,
     /// Render only these samples of each pixel, of which the second number is not one: 1000..2000 is the second
@@ -186,6 +207,9 @@ pub struct Merge {
     /// The film of all their samples
     #[arg(short, long, value_name = "FILM")]
     pub output: PathBuf,
+    /// Replace a film also if its samples are lost by that
+    #[arg(long)]
+    pub force: bool,
     #[command(flatten)]
     pub voice: Voice,
 }
@@ -248,7 +272,7 @@ pub struct Verify {
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     /// Samples per pixel of each estimator; the reference has twice as many
-    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..))]
+    #[arg(long, value_name = "N", default_value_t = 128, value_parser = clap::value_parser!(u32).range(8..=MOST_LOOKED_AT))]
     pub spp: u32,
     /// Edge of the blocks that are compared, in pixels; larger ones are made of these
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(1..=4096))]
@@ -275,7 +299,7 @@ pub struct Explain {
         value_parser = ["bdpt", "path", "path_ems", "naive", "light"])]
     pub integrator: String,
     /// Samples per pixel that are looked at
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=MOST_LOOKED_AT))]
     pub spp: u32,
     #[command(flatten)]
     pub sampling: Sampling,

@@ -13,7 +13,7 @@ use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::progress::Bar;
 use crate::render::integrator;
-use crate::verify::open_small;
+use crate::verify::{more_samples, open_small};
 
 /// Rows of the table.
 const ROWS: usize = 12;
@@ -39,6 +39,7 @@ pub fn run(args: &Explain, console: &mut Console) -> Result<ExitCode, Failure> {
         explain(&scene, &question, &interrupts.control, |fraction| bar.show_part("looking", fraction));
     bar.finish();
     let answer = answer?;
+    console.warn(more_samples(args.spp, answer.samples));
     console.result(&answer, || text(&answer))?;
     Ok(ExitCode::SUCCESS)
 }
@@ -59,7 +60,12 @@ fn check(r: Crop, w: Crop) -> Result<(), Failure> {
 
 fn text(a: &Explanation) -> String {
     let [x, y, width, height] = a.region;
-    let mut text = format!("{width} × {height} pixels from {x},{y}: mean luminance {:.5}\n\n", a.mean);
+    let mut text = format!(
+        "{width} × {height} pixels from {x},{y}, {} samples each: mean luminance {:.5}, one sample is off by {}\n\n",
+        a.samples,
+        a.mean,
+        percent(a.per_sample)
+    );
     if !a.rows.is_empty() {
         text += &format!(
             "{:<16} {:>8} {:>8} {:>11}  {:<22} {:<26} {}\n",

@@ -72,7 +72,7 @@ impl Failure {
 }
 
 /// What went wrong with a file, without its name.
-fn reason(e: &FilmError, not_found: &str) -> String {
+pub fn reason(e: &FilmError, not_found: &str) -> String {
     match e {
         FilmError::Io { source, .. } => match source.kind() {
             ErrorKind::NotFound => not_found.to_owned(),

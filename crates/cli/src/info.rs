@@ -90,6 +90,10 @@ fn text(info: &SceneInfo) -> String {
     row("camera", info.camera.to_owned());
     let (triangles, spheres) = (counted(info.triangles, "triangle"), counted(info.spheres, "sphere"));
     row("shapes", format!("{} ({triangles}, {spheres})", info.shapes));
+    if info.groups > 0 {
+        let (groups, instances) = (counted(info.groups, "group"), counted(info.instances, "instance"));
+        row("instances", format!("{instances} of {groups}: {} triangles are seen", info.placed_triangles));
+    }
     row("materials", list(&info.materials));
     row("lights", format!("{} ({} W in all)", list(&info.lights), figure(info.power)));
     row(

@@ -97,7 +97,7 @@ pub fn open_shrunk(
     if let Some(side) = side {
         caustica_verify::shrink(&mut description.film, side);
     }
-    let names = description.shapes.iter().map(|s| s.name.clone()).collect();
+    let names = description.all_shapes().map(|s| s.name.clone()).collect();
     Ok((scene(description, source.tree.into(), console)?, names, depths))
 }
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::args::Merge;
 use crate::console::Console;
 use crate::failure::Failure;
-use crate::outputs::is_film;
+use crate::outputs::{check_replaceable, is_film};
 
 /// What `--json` prints, beside warnings.
 #[derive(Serialize)]
@@ -43,6 +43,9 @@ pub fn run(args: &Merge, console: &Console) -> Result<ExitCode, Failure> {
     for path in films {
         let film = read(path)?;
         sum.merge(&film).map_err(|e| refusal(first, path, &e.to_string()))?;
+    }
+    if !args.force {
+        check_replaceable(output, (sum.film.layout(), &sum.facts))?;
     }
     sum.write(output).map_err(|e| Failure::output(output, e))?;
     let facts = &sum.facts;

@@ -1,9 +1,9 @@
 use std::path::{Path, PathBuf};
 
-use caustica::film::check_writable;
+use caustica::film::{FilmFacts, FilmLayout, FilmRecord, check_writable};
 
 use crate::args::Render;
-use crate::failure::Failure;
+use crate::failure::{Failure, reason};
 
 /// Extensions of pictures that are not written.
 const OTHER_PICTURES: [&str; 10] = ["jpg", "jpeg", "tif", "tiff", "bmp", "gif", "webp", "hdr", "pfm", "ppm"];
@@ -47,6 +47,30 @@ impl Outputs {
 /// Whether a file is a film by its name.
 pub fn is_film(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("film"))
+}
+
+/// Refuses to replace a film whose samples would be lost, which may be the work of hours: one of something else, or of
+/// samples that the new one does not have. A film that can be made again by the same command can be replaced.
+///
+/// # Errors
+/// What would be lost.
+pub fn check_replaceable(path: &Path, (layout, facts): (&FilmLayout, &FilmFacts)) -> Result<(), Failure> {
+    if !path.metadata().is_ok_and(|there| there.is_file() && there.len() > 0) {
+        return Ok(());
+    }
+    let lost = match FilmRecord::read_facts(path) {
+        Err(e) => format!("is no film ({})", reason(&e, "it is gone")),
+        Ok((other, _)) if other != *layout => format!("is a film of {other}, not of {layout}"),
+        Ok((_, other)) => match other.provenance.difference(&facts.provenance) {
+            Some(what) => format!("is another film: they differ in {what}"),
+            None if facts.samples.contains(&other.samples) => return Ok(()),
+            None => format!("holds the samples {}, not all of which the new one has", other.samples),
+        },
+    };
+    Err(Failure::Output(format!(
+        "`{}` is there and {lost}: choose another name, or replace it by `--force`",
+        path.display()
+    )))
 }
 
 /// The output without its extension, if it is a picture's.

@@ -2,7 +2,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use caustica::description::Integrator;
-use caustica::film::{Provenance, write_exr, write_png};
+use caustica::film::{FilmFacts, Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::scene::camera::Joins;
 use caustica::session::{Stages, content_hash, integrator_by_name, integrator_name, provenance};
@@ -15,7 +15,7 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::interrupt::Interrupts;
 use crate::loading::{self, Depths};
-use crate::outputs::Outputs;
+use crate::outputs::{Outputs, check_replaceable};
 use crate::progress::Bar;
 use crate::{prompt, replay};
 
@@ -46,7 +46,13 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let of = provenance(&args.source.name(), &hash, &settings);
     let (checkpoint, record) = Checkpoint::open(&args.checkpoint)?.unzip();
     let options = options(args, settings, opened.samples);
+    let wanted =
+        u64::from(options.first_sample)..u64::from(options.first_sample) + u64::from(options.samples);
     let session = checkpoint::session(&scene, options, (record.flatten(), &of))?;
+    if let (Outputs::Film(path), false) = (&outputs, args.force) {
+        let facts = FilmFacts { samples: wanted.into(), ..session.facts(&of, 0.0) };
+        check_replaceable(path, (session.film().layout(), &facts))?;
+    }
     console.warn(setting_warnings(args, &session));
     let interrupts = Interrupts::listen();
     let checkpoint = checkpoint.as_ref();

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use caustica::Scene;
 use caustica::description::Integrator;
 use caustica::film::check_writable;
+use caustica::scene::Diagnostic;
 use caustica::session::available_threads;
 use caustica_report::{Verification, percent, write_verification};
 use caustica_verify::{Options, Outcome, VerifyError, heat_map, verification, verify};
@@ -53,6 +54,7 @@ pub fn run(args: &Verify, console: &mut Console) -> Result<ExitCode, Failure> {
         threads: args.source.threads.map(usize::from),
     };
     let outcome = measure(&scene, &options, console)?;
+    console.warn(more_samples(args.spp, outcome.samples));
     let title = format!("{}: do all integrators agree?", args.source.name());
     let mut told =
         verification(&outcome, (&title, &args.source.name()), notes(&args.source, &args.sampling, &scene));
@@ -83,9 +85,18 @@ impl From<VerifyError> for Failure {
     fn from(e: VerifyError) -> Self {
         match e {
             VerifyError::Render(e) => e.into(),
+            VerifyError::Memory { .. } => Self::Machine(e.to_string()),
             other => Self::Usage(other.to_string()),
         }
     }
+}
+
+/// Samples are split into independent parts of equal size, so that there may be more of them than were asked for.
+pub fn more_samples(asked: u32, taken: u32) -> Option<Diagnostic> {
+    (taken != asked).then(|| {
+        Diagnostic::warning(format!("{taken} samples a pixel were taken instead of {asked}"))
+            .hint("they are split into independent parts of equal size, whose differences tell the noise")
+    })
 }
 
 /// What was asked for, for people.

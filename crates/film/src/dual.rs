@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use crate::FilmError;
 use crate::error_bars::ErrorBars;
-use crate::film::{Film, FilmCounts, combine, develop};
+use crate::film::{Film, FilmCounts, combine};
 use crate::layout::FilmLayout;
-use crate::picture::{LightImage, Picture};
+use crate::picture::{LightImage, Picture, develop};
 
 /// A film in two half-buffers. Each pass of one sample a pixel goes to one of them, by its number alone, so that the
 /// halves, like their sum, depend on which passes were added and on nothing else.

@@ -10,16 +10,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
 use crate::layout::{FilmLayout, Window};
-use crate::picture::Picture;
+use crate::picture::{Picture, develop};
 use crate::quantum::Quantum;
+use crate::turns::Turns;
 
 /// More pixels than this are refused without asking for the memory.
 const MOST_PIXELS: u64 = 1 << 31;
 
 /// Three channels of the eye image, then three of the light image.
-type Sums = [AtomicI64; 6];
-const EYE: usize = 0;
-const LIGHT: usize = 3;
+type Sums = [AtomicI64; CHANNELS];
+pub(crate) const CHANNELS: usize = 6;
+pub(crate) const EYE: usize = 0;
+pub(crate) const LIGHT: usize = 3;
 
 /// How much went into a film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -56,6 +58,7 @@ pub struct Film {
     layout: FilmLayout,
     quantum: Quantum,
     pixels: Vec<Sums>,
+    turns: Turns,
     eye_samples: AtomicU64,
     light_samples: AtomicU64,
     invalid: AtomicU64,
@@ -87,6 +90,7 @@ impl Film {
             layout,
             quantum: Quantum::new(layout.quantum_exponent),
             pixels,
+            turns: Turns::default(),
             eye_samples: AtomicU64::new(0),
             light_samples: AtomicU64::new(0),
             invalid: AtomicU64::new(0),
@@ -117,16 +121,24 @@ impl Film {
         Ok(film)
     }
 
-    /// Sets the sums of the pixels from `start` on, and what of them there is.
+    /// Sets the 64 bits of the sums of the pixels from `start` on.
     pub(crate) fn set_sums(&mut self, start: usize, sums: impl Iterator<Item = [i64; 6]>) {
         for (pixel, sums) in self.pixels[start..].iter_mut().zip(sums) {
             *pixel = sums.map(AtomicI64::new);
         }
     }
 
-    /// The sums of some pixels in quanta.
-    pub(crate) fn some_sums(&self, pixels: Range<usize>) -> impl ExactSizeIterator<Item = [i64; 6]> {
+    /// The sums of some pixels in quanta, but for their turns.
+    pub(crate) fn some_sums(&self, pixels: Range<usize>) -> impl ExactSizeIterator<Item = [i64; CHANNELS]> {
         self.pixels[pixels].iter().map(|pixel| pixel.each_ref().map(|sum| sum.load(Relaxed)))
+    }
+
+    pub(crate) fn turns(&self) -> &Turns {
+        &self.turns
+    }
+
+    pub(crate) fn turns_mut(&mut self) -> &mut Turns {
+        &mut self.turns
     }
 
     /// The film's sizes.
@@ -172,8 +184,8 @@ impl Film {
     #[inline]
     pub fn splat_into(&self, buffer: &mut LightBuffer, filter: &PixelFilter, position: Vec2, value: Rgb) {
         self.splat(filter, position, value, |index, counts| {
-            for (sum, count) in buffer.sums[index].iter_mut().zip(counts) {
-                *sum = sum.saturating_add(count);
+            for (c, (sum, count)) in buffer.sums[index].iter_mut().zip(counts).enumerate() {
+                self.turns.add_alone((number(index, LIGHT + c), sum), count);
             }
         });
     }
@@ -228,9 +240,9 @@ impl Film {
 
     #[inline]
     fn add_counts_to(&self, index: usize, layer: usize, counts: [i64; 3]) {
-        for (sum, count) in self.pixels[index][layer..layer + 3].iter().zip(counts) {
+        for (c, (sum, count)) in self.pixels[index][layer..layer + 3].iter().zip(counts).enumerate() {
             if count != 0 {
-                add(sum, count);
+                self.turns.add((number(index, layer + c), sum), count);
             }
         }
     }
@@ -281,9 +293,11 @@ impl Film {
     /// Adds all that went into `other`, a film of the same layout.
     pub fn merge(&self, other: &Film) -> Result<(), FilmError> {
         self.check_same_layout(other)?;
-        for (ours, theirs) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()) {
-            add(ours, theirs.load(Relaxed));
+        for (i, (ours, theirs)) in self.pixels.iter().flatten().zip(other.pixels.iter().flatten()).enumerate()
+        {
+            self.turns.add((i as u64, ours), theirs.load(Relaxed));
         }
+        self.turns.merge(&other.turns);
         self.add_counts(other.counts());
         Ok(())
     }
@@ -295,15 +309,24 @@ impl Film {
         Err(FilmError::Layout(format!("they are of {} and {}", self.layout, other.layout)))
     }
 
-    /// The sums in quanta, pixel by pixel: three channels of the eye image, then three of the light
-    /// image. With [`Film::counts`], all that [`Film::restore`] needs.
-    pub fn sums(&self) -> impl ExactSizeIterator<Item = [i64; 6]> {
-        self.some_sums(0..self.pixels.len())
+    /// The sums in quanta, pixel by pixel: three channels of the eye image, then three of the light image; those beyond
+    /// 64 bits are the largest number. With [`Film::counts`], all that [`Film::restore`] needs.
+    pub fn sums(&self) -> impl ExactSizeIterator<Item = [i64; CHANNELS]> {
+        let shown = |(i, sums): (usize, [i64; CHANNELS])| {
+            std::array::from_fn(|c| self.turns.shown(number(i, c), sums[c]))
+        };
+        self.some_sums(0..self.pixels.len()).enumerate().map(shown)
+    }
+
+    /// All that tells sums apart, also those beyond 64 bits.
+    fn exact(&self) -> impl Iterator<Item = u64> {
+        let turns = self.turns.all().into_iter().flat_map(|(number, turns)| [number, turns as u64]);
+        self.some_sums(0..self.pixels.len()).flatten().map(|sum| sum as u64).chain(turns)
     }
 
     /// Whether two films have the same layout, sums and counts.
     pub fn bits_equal(&self, other: &Film) -> bool {
-        self.layout == other.layout && self.counts() == other.counts() && self.sums().eq(other.sums())
+        self.layout == other.layout && self.counts() == other.counts() && self.exact().eq(other.exact())
     }
 
     /// A hash of the layout, the sums and the counts.
@@ -312,8 +335,7 @@ impl Film {
         let counts = self.counts();
         let head = [width, height, window.x, window.y, window.width, window.height, quantum_exponent as u32];
         let tail = [counts.eye_samples, counts.light_samples, counts.invalid, counts.clamped];
-        let sums = self.sums().flatten().map(|sum| sum as u64);
-        head.into_iter().map(u64::from).chain(tail).chain(sums).fold(0, combine)
+        head.into_iter().map(u64::from).chain(tail).chain(self.exact()).fold(0, combine)
     }
 
     /// The picture so far: each layer divided by its own count. A layer without samples is black.
@@ -322,49 +344,21 @@ impl Film {
     }
 }
 
-/// The picture of these sums, without error bars.
-pub(crate) fn develop<I: Iterator<Item = [i64; 6]>>(
-    layout: &FilmLayout,
-    counts: FilmCounts,
-    sums: impl Fn() -> I,
-) -> Picture {
-    let quantum = Quantum::new(layout.quantum_exponent);
-    let layer = |first: usize, samples: u64| {
-        let scale = if samples == 0 { 0.0 } else { quantum.size() / samples as f64 };
-        let develop = |sum: i64| (sum as f64 * scale) as f32;
-        sums().map(|s| Rgb([s[first], s[first + 1], s[first + 2]].map(develop))).collect()
-    };
-    Picture {
-        width: layout.width,
-        height: layout.height,
-        window: layout.window,
-        eye_samples: counts.eye_samples,
-        light_samples: counts.light_samples,
-        eye: layer(EYE, counts.eye_samples),
-        light: layer(LIGHT, counts.light_samples),
-        error: None,
-    }
-}
-
 /// A hash of two words.
 pub(crate) fn combine(hash: u64, word: u64) -> u64 {
     mix64(hash.wrapping_mul(3).wrapping_add(1) ^ word)
+}
+
+/// The number of a sum among all of a film.
+#[inline]
+fn number(pixel: usize, channel: usize) -> u64 {
+    (pixel * CHANNELS + channel) as u64
 }
 
 /// `films` films of that window need more memory than there is.
 fn too_large(window: Window, films: u64) -> FilmError {
     let bytes = window.pixels().saturating_mul(films * size_of::<Sums>() as u64);
     FilmError::too_large(window.width, window.height, bytes)
-}
-
-/// Adds, but for sums beyond 64 bits, which stay at the end of what there is. Whoever sees a sum wrap around puts it
-/// there, so that without negative counts this too depends on no order.
-#[inline]
-fn add(sum: &AtomicI64, count: i64) {
-    let before = sum.fetch_add(count, Relaxed);
-    if before.checked_add(count).is_none() {
-        sum.store(if count < 0 { i64::MIN } else { i64::MAX }, Relaxed);
-    }
 }
 
 /// Whether the machine has the memory for a film of that many pixels, and for developing it. Asking for it

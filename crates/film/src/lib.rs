@@ -17,6 +17,7 @@ mod picture;
 mod quantum;
 mod record;
 mod tonemap;
+mod turns;
 
 pub use display::{Develop, write_png, write_srgb_png};
 pub use dual::{DualFilm, half_of};

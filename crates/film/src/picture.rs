@@ -7,7 +7,9 @@ use caustica_math::Rgb;
 use serde::{Deserialize, Serialize};
 
 use crate::FilmError;
-use crate::layout::{Window, check_layer, check_window};
+use crate::film::{CHANNELS, EYE, FilmCounts, LIGHT};
+use crate::layout::{FilmLayout, Window, check_layer, check_window};
+use crate::quantum::Quantum;
 
 /// What part the light image plays in the combined picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,6 +85,30 @@ impl Picture {
         check_layer(self.eye.len(), self.window)?;
         check_layer(self.light.len(), self.window)?;
         self.error.as_ref().map_or(Ok(()), |error| check_layer(error.len(), self.window))
+    }
+}
+
+/// The picture of these sums, without error bars.
+pub(crate) fn develop<I: Iterator<Item = [i64; CHANNELS]>>(
+    layout: &FilmLayout,
+    counts: FilmCounts,
+    sums: impl Fn() -> I,
+) -> Picture {
+    let quantum = Quantum::new(layout.quantum_exponent);
+    let layer = |first: usize, samples: u64| {
+        let scale = if samples == 0 { 0.0 } else { quantum.size() / samples as f64 };
+        let develop = |sum: i64| (sum as f64 * scale) as f32;
+        sums().map(|s| Rgb([s[first], s[first + 1], s[first + 2]].map(develop))).collect()
+    };
+    Picture {
+        width: layout.width,
+        height: layout.height,
+        window: layout.window,
+        eye_samples: counts.eye_samples,
+        light_samples: counts.light_samples,
+        eye: layer(EYE, counts.eye_samples),
+        light: layer(LIGHT, counts.light_samples),
+        error: None,
     }
 }
 

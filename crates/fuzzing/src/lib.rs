@@ -6,6 +6,7 @@
 
 mod dice;
 mod images;
+mod meshes;
 mod mutate;
 mod readers;
 mod scenes;
@@ -40,10 +41,31 @@ pub const TARGETS: &[Target] = &[
         name: "nori_xml",
         run: readers::nori_xml,
         seeds: seeds::nori_xml,
-        mutate: xml::mutate,
+        mutate: xml::nori,
         words: words::NORI,
     },
+    Target {
+        name: "mitsuba_xml",
+        run: readers::mitsuba_xml,
+        seeds: seeds::mitsuba_xml,
+        mutate: xml::mitsuba,
+        words: words::MITSUBA,
+    },
     Target { name: "obj", run: readers::obj, seeds: seeds::obj, mutate: mutate::obj, words: words::OBJ },
+    Target {
+        name: "ply",
+        run: readers::ply,
+        seeds: meshes::ply,
+        mutate: meshes::change_ply,
+        words: words::PLY,
+    },
+    Target {
+        name: "serialized",
+        run: readers::serialized,
+        seeds: meshes::serialized,
+        mutate: meshes::change_serialized,
+        words: &["\x1c\x04\x03", "\x1c\x04\x04"],
+    },
     Target {
         name: "images",
         run: readers::images,

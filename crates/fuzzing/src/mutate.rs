@@ -48,12 +48,17 @@ pub fn insert_word(data: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     data.splice(range.start..end, dice.choose(words).bytes());
 }
 
-/// Changes meshes: lines copied and left out, and words of lines replaced.
+/// Changes of OBJ files.
 pub fn obj(data: &mut Vec<u8>, dice: &mut Dice) {
+    lines(data, words::OBJ, dice);
+}
+
+/// Changes files of lines: lines copied and left out, and words of lines replaced.
+pub fn lines(data: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     for _ in 0..=dice.below(4) {
         match dice.below(6) {
             0 => binary(data, dice),
-            1 => insert_word(data, words::OBJ, dice),
+            1 => insert_word(data, words, dice),
             2 => replace_number(data, |b| b.is_ascii_whitespace() || b == b'/', dice),
             kind => {
                 let starts: Vec<usize> =

@@ -3,10 +3,14 @@
 use caustica_film::FilmRecord;
 use std::sync::LazyLock;
 
-use caustica_import::{Loaded, TestKind, Trust, decode_image, parse_nori_with, read_obj};
-use caustica_scene::{Description, Diagnostic, Scene};
+use caustica_import::{
+    Loaded, Provision, TestKind, Trust, decode_image, load_with, parse_nori_with, read_obj, read_ply,
+    read_serialized,
+};
+use caustica_scene::description::Mesh;
+use caustica_scene::{Cause, Description, Diagnostic, MemoryLimit, Scene};
 
-use crate::{folder, images};
+use crate::{folder, images, meshes};
 
 /// Scenes of more shapes are read and not made ready, which would take the time of many inputs.
 const MOST_SHAPES: usize = 20_000;
@@ -16,18 +20,12 @@ const MOST_SHAPES: usize = 20_000;
 /// # Panics
 /// If a promise is broken.
 pub fn nori_xml(data: &[u8]) {
-    static FILES: LazyLock<()> = LazyLock::new(|| {
-        let small = [("tri.obj", crate::seeds::TRIANGLE.as_bytes().to_vec())];
-        for (name, bytes) in small.into_iter().chain(images::named()) {
-            std::fs::write(folder().path().join(name), bytes).expect("a small file");
-        }
-    });
-    LazyLock::force(&FILES);
+    write_files();
     let text = String::from_utf8_lossy(data);
     match parse_nori_with(&text, "s.xml", folder().path(), Trust::OwnFolder) {
-        Err(error) => check_place(&error, &text),
+        Err(error) => check_place(&error, "s.xml", &text),
         Ok(Loaded { scene, tests, warnings, .. }) => {
-            warnings.iter().filter(|w| w.origin.is_some()).for_each(|w| check_place(w, &text));
+            warnings.iter().filter(|w| w.origin.is_some()).for_each(|w| check_place(w, "s.xml", &text));
             let stages = tests.into_iter().flat_map(|test| {
                 let scenes = match test.kind {
                     TestKind::TTest { scenes, .. } => scenes,
@@ -36,6 +34,40 @@ pub fn nori_xml(data: &[u8]) {
                 scenes.into_iter().chain([test.stage])
             });
             scene.into_iter().chain(stages).for_each(make_ready);
+        }
+    }
+}
+
+/// Writes what scenes name.
+fn write_files() {
+    static FILES: LazyLock<()> = LazyLock::new(|| {
+        let small = [
+            ("tri.obj", crate::seeds::TRIANGLE.as_bytes().to_vec()),
+            ("part.xml", crate::seeds::PART.as_bytes().to_vec()),
+            ("curve.spd", b"400 0.1\n500 0.6\n700 0.9\n".to_vec()),
+        ];
+        for (name, bytes) in small.into_iter().chain(images::named()).chain(meshes::named()) {
+            std::fs::write(folder().path().join(name), bytes).expect("a small file");
+        }
+    });
+    LazyLock::force(&FILES);
+}
+
+/// A scene file of Mitsuba's, likewise.
+///
+/// # Panics
+/// If a promise is broken.
+pub fn mitsuba_xml(data: &[u8]) {
+    write_files();
+    let path = folder().path().join("m.xml");
+    std::fs::write(&path, data).expect("a temporary file");
+    let (name, text) = (path.display().to_string(), String::from_utf8_lossy(data));
+    let provision = Provision { trust: Trust::OwnFolder, variables: &[] };
+    match load_with(&path, &provision) {
+        Err(error) => check_place(&error, &name, &text),
+        Ok(Loaded { scene, warnings, .. }) => {
+            warnings.iter().filter(|w| w.origin.is_some()).for_each(|w| check_place(w, &name, &text));
+            scene.into_iter().for_each(make_ready);
         }
     }
 }
@@ -52,9 +84,9 @@ fn make_ready(description: Description) {
 }
 
 /// A diagnostic names a place that the text has.
-fn check_place(diagnostic: &Diagnostic, text: &str) {
+fn check_place(diagnostic: &Diagnostic, file: &str, text: &str) {
     let origin = diagnostic.origin.as_ref().unwrap_or_else(|| panic!("no place: {diagnostic}"));
-    if origin.file != "s.xml" {
+    if origin.file != file {
         return;
     }
     assert!(origin.line >= 1 && origin.line as usize <= text.matches('\n').count() + 1, "{diagnostic}");
@@ -87,6 +119,38 @@ pub fn obj(data: &[u8]) {
     }
 }
 
+/// A PLY mesh, likewise.
+///
+/// # Panics
+/// If a promise is broken.
+pub fn ply(data: &[u8]) {
+    match read_ply(data, "m.ply") {
+        Err(error) => assert!(error.origin.as_ref().is_some_and(|o| o.line >= 1), "{error}"),
+        Ok(read) => check_mesh(&read.mesh),
+    }
+}
+
+/// The meshes of a serialized file, which may not take more memory than they are allowed.
+///
+/// # Panics
+/// If a promise is broken.
+pub fn serialized(data: &[u8]) {
+    for index in 0..3 {
+        match read_serialized(data, "m.serialized", index, MemoryLimit::Bytes(64 << 20)) {
+            Err(error) => assert!(error.cause == Cause::Memory || error.to_string().contains("m.serialized")),
+            Ok(mesh) => check_mesh(&mesh),
+        }
+    }
+}
+
+fn check_mesh(mesh: &Mesh) {
+    let vertices = mesh.positions.len();
+    assert!(!mesh.triangles.is_empty());
+    assert!(mesh.triangles.iter().flatten().all(|v| (*v as usize) < vertices));
+    assert!(mesh.positions.iter().all(|p| p.is_finite()));
+    assert!([0, vertices].contains(&mesh.normals.len()) && [0, vertices].contains(&mesh.uvs.len()));
+}
+
 /// A picture for textures: what is read is as large as it says, and has only values that light can have.
 ///
 /// # Panics
@@ -115,8 +179,19 @@ pub fn exr(data: &[u8]) {
     }
 }
 
-/// Reads a film file, and writes it again.
+/// Reads a film file, and writes it again: as it is, and with the hash that its bytes should have, because hardly any
+/// changed file has the right one.
+///
+/// # Panics
+/// If a promise is broken.
 pub fn film(data: &[u8]) {
+    one_film(data);
+    if let Some(body) = data.len().checked_sub(blake3::OUT_LEN).map(|end| &data[..end]) {
+        one_film(&[body, blake3::hash(body).as_bytes()].concat());
+    }
+}
+
+fn one_film(data: &[u8]) {
     if let Ok(record) = FilmRecord::parse(data) {
         assert_eq!(record.film.sums().len() as u64, record.film.layout().window.pixels());
         assert!(record.check_mergeable(&record).is_err() || record.facts.samples.total() == 0);

@@ -61,6 +61,54 @@ const TESTS: &str = r#"<scene>
   <test type="chi2test"><integer name="resolution" value="8"/><bsdf type="dielectric"/></test>
 </scene>"#;
 
+/// Most of what Mitsuba's scenes are made of.
+const MITSUBA: [&str; 3] = [
+    include_str!("../../../peers/mitsuba/scenes/diffuse.xml"),
+    r##"<?xml version="1.0"?>
+<scene version="3.0.0">
+  <default name="spp" value="16"/><default name="kind" value="thinlens"/><path value="."/>
+  <integrator type="path"><integer name="max_depth" value="-1"/></integrator>
+  <sensor type="$kind">
+    <float name="fov" value="45.5"/><string name="fov_axis" value="smaller"/>
+    <float name="aperture_radius" value=".1"/><float name="focus_distance" value="4"/>
+    <transform name="to_world"><lookat target="0, 0, 0" origin="1, 2, 3" up="0, 1, 0"/><rotate angle="3" z="1"/></transform>
+    <sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+    <film type="hdrfilm"><integer name="width" value="80"/><rfilter type="mitchell"/></film>
+  </sensor>
+  <bsdf type="dielectric" id="glass"><string name="int_ior" value="bk7"/></bsdf><alias id="glass" as="g"/>
+  <shape type="sphere"><point name="center" x="1" y="2"/><boolean name="flip_normals" value="true"/><ref id="g"/></shape>
+  <shape type="rectangle"><bsdf type="diffuse"><texture type="checkerboard" name="reflectance">
+    <rgb name="color0" value="#102030"/><transform name="to_uv"><scale value="4"/></transform></texture></bsdf>
+    <emitter type="area"><spectrum name="radiance" value="400:0, 500:8, 600:15.6"/></emitter></shape>
+  <shape type="shapegroup" id="group"><shape type="cube"/><shape type="disk"><ref id="glass"/></shape></shape>
+  <shape type="instance"><ref id="group"/><transform name="to_world"><scale x="-2"/><translate value="0 3 1"/></transform></shape>
+  <emitter type="point"><rgb name="intensity" value="3 2 1"/></emitter>
+  <emitter type="envmap"><string name="filename" value="sky.exr"/><float name="scale" value="0.5"/></emitter>
+</scene>"##,
+    r#"<scene version="0.6.0">
+  <integrator type="bdpt"/><sensor type="perspective"><float name="fov" value="30"/><transform name="toWorld">
+    <matrix value="1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"/></transform></sensor>
+  <include filename="part.xml"/>
+  <shape type="serialized"><string name="filename" value="m.serialized"/><integer name="shapeIndex" value="1"/>
+    <bsdf type="roughconductor"><string name="material" value="Au"/><float name="alpha" value=".2"/></bsdf></shape>
+  <shape type="ply"><string name="filename" value="m.ply"/><boolean name="faceNormals" value="true"/></shape>
+  <shape type="obj"><string name="filename" value="tri.obj"/><bsdf type="twosided"><bsdf type="diffuse">
+    <texture type="bitmap" name="reflectance"><string name="filename" value="tile.png"/></texture></bsdf></bsdf></shape>
+  <shape type="cylinder"><point name="p0" x="1" y="2" z="3"/><float name="radius" value="0.5"/>
+    <bsdf type="diffuse"><spectrum name="reflectance" filename="curve.spd"/></bsdf></shape>
+  <emitter type="directional"><vector name="direction" x="1"/><blackbody name="irradiance" temperature="5000"/></emitter>
+</scene>"#,
+];
+
+/// A part that a scene includes.
+pub const PART: &str =
+    "<scene version=\"3.0.0\"><shape type=\"sphere\"><bsdf type=\"plastic\" id=\"inner\"/></shape></scene>";
+
+/// Scene files of Mitsuba's.
+pub fn mitsuba_xml() -> Vec<Vec<u8>> {
+    MITSUBA.iter().map(|text| text.as_bytes().to_vec()).collect()
+}
+
 /// Scene files; their meshes become the one that is there.
 pub fn nori_xml() -> Vec<Vec<u8>> {
     let small = |text: &str| {
@@ -108,7 +156,7 @@ fn film([width, height]: [u32; 2], [x, y, w, h]: [u32; 4]) -> Vec<u8> {
     std::fs::read(path).expect("a small picture")
 }
 
-/// Film files; the last is larger than a chunk of them.
+/// Film files; the first has sums beyond 64 bits, the last is larger than a chunk of them.
 pub fn films() -> Vec<Vec<u8>> {
     let path = folder().path().join("seed.film");
     [[8, 6], [1, 1], [300, 220]]
@@ -121,6 +169,11 @@ pub fn films() -> Vec<Vec<u8>> {
                 (0..width * height).for_each(|i| {
                     film.half(pass).add_eye([i % width, i / width], Rgb::splat(i as f32));
                 });
+            }
+            let huge = if height == 6 { 9 } else { 0 };
+            for _ in 0..huge {
+                film.half(0).add_eye([1, 2], Rgb::new(1e30, -1e30, 1.0));
+                film.half(1).add_eye([3, 4], Rgb::new(-1e30, 1e30, 1.0));
             }
             film.finish_passes(0..3, true, true);
             let settings = [("seed".to_owned(), "3".to_owned())].into();
@@ -151,6 +204,16 @@ mod tests {
         std::fs::write(folder.path().join("tri.obj"), super::TRIANGLE).unwrap();
         for (name, bytes) in crate::images::named() {
             std::fs::write(folder.path().join(name), bytes).unwrap();
+        }
+        for (name, bytes) in crate::meshes::named() {
+            std::fs::write(folder.path().join(name), bytes).unwrap();
+        }
+        std::fs::write(folder.path().join("part.xml"), super::PART).unwrap();
+        std::fs::write(folder.path().join("curve.spd"), "400 0.1\n700 0.9\n").unwrap();
+        for seed in super::mitsuba_xml() {
+            let text = String::from_utf8(seed).unwrap();
+            let loaded = caustica_import::parse_mitsuba(&text, "m.xml", folder.path(), &[]);
+            loaded.unwrap_or_else(|e| panic!("{e}\n{text}"));
         }
         for seed in super::nori_xml() {
             let text = String::from_utf8(seed).unwrap();

@@ -1,5 +1,9 @@
 //! The words of the formats: what random bytes would not find.
 
+mod mitsuba;
+
+pub use mitsuba::{MITSUBA, PLY};
+
 /// Tags, plugins, properties and values of scene files.
 pub const NORI: &[&str] = &[
     "<scene>",

@@ -6,13 +6,23 @@ use crate::dice::Dice;
 use crate::mutate::{self, LONGEST, insert_word, replace_number};
 use crate::words;
 
+/// Changes of Nori's scenes.
+pub fn nori(data: &mut Vec<u8>, dice: &mut Dice) {
+    mutate(data, words::NORI, dice);
+}
+
+/// Changes of Mitsuba's scenes.
+pub fn mitsuba(data: &mut Vec<u8>, dice: &mut Dice) {
+    mutate(data, words::MITSUBA, dice);
+}
+
 /// Copies, moves and leaves out elements, and changes values.
-pub fn mutate(data: &mut Vec<u8>, dice: &mut Dice) {
+fn mutate(data: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     for _ in 0..=dice.below(3) {
         match dice.below(12) {
             0 => mutate::binary(data, dice),
-            1 => insert_word(data, words::NORI, dice),
-            2..=5 => value(data, dice),
+            1 => insert_word(data, words, dice),
+            2..=5 => value(data, words, dice),
             6 | 7 => replace_number(data, |b| matches!(b, b'"' | b'\'' | b',' | b' '), dice),
             8 => {
                 if let Some(range) = element(data, dice) {
@@ -32,7 +42,7 @@ pub fn mutate(data: &mut Vec<u8>, dice: &mut Dice) {
 }
 
 /// Replaces what stands between two quotation marks.
-fn value(data: &mut Vec<u8>, dice: &mut Dice) {
+fn value(data: &mut Vec<u8>, words: &[&str], dice: &mut Dice) {
     let quotes: Vec<usize> = (0..data.len()).filter(|i| matches!(data[*i], b'"' | b'\'')).collect();
     let pair = 2 * dice.below(quotes.len() / 2);
     let [start, end] = [pair, pair + 1].map(|i| quotes.get(i).copied().unwrap_or(0));
@@ -40,7 +50,7 @@ fn value(data: &mut Vec<u8>, dice: &mut Dice) {
         return;
     }
     let new = match dice.below(4) {
-        0 => (*dice.choose(words::NORI)).to_owned(),
+        0 => (*dice.choose(words)).to_owned(),
         1 => (*dice.choose(words::NUMBERS)).to_owned(),
         _ => [0; 3].map(|_| *dice.choose(words::NUMBERS)).join(","),
     };

@@ -54,6 +54,21 @@ fn nori_xml() {
 }
 
 #[test]
+fn mitsuba_xml() {
+    short("mitsuba_xml", 20_000);
+}
+
+#[test]
+fn ply() {
+    short("ply", 40_000);
+}
+
+#[test]
+fn serialized() {
+    short("serialized", 20_000);
+}
+
+#[test]
 fn film() {
     short("film", 40_000);
 }

@@ -123,13 +123,21 @@ pub(crate) fn open(path: &Path) -> Result<(File, u64), String> {
 /// The bytes of a regular file of at most `limit` bytes.
 pub(crate) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let (file, size) = open(path)?;
-    let mut bytes = Vec::new();
+    if size > limit {
+        return Err(too_large(limit));
+    }
+    // Room for one more tells the end of the file without another allocation.
+    let mut bytes = Vec::with_capacity(size as usize + 1);
     // The file may grow while it is read, so the size alone is no bound.
     file.take(limit + 1).read_to_end(&mut bytes).map_err(|e| reason(&e))?;
-    if size > limit || bytes.len() as u64 > limit {
-        return Err(format!("it is larger than {} MiB", limit >> 20));
+    if bytes.len() as u64 > limit {
+        return Err(too_large(limit));
     }
     Ok(bytes)
+}
+
+fn too_large(limit: u64) -> String {
+    format!("it is larger than {} MiB", limit >> 20)
 }
 
 fn reason(error: &io::Error) -> String {

@@ -1,4 +1,4 @@
-//! Scene files to descriptions: Nori's and Mitsuba's XML, OBJ and PLY meshes, and PNG, JPEG and OpenEXR images.
+//! Scene files to descriptions: Nori's and Mitsuba's XML, OBJ, PLY and serialized meshes, and PNG, JPEG and OpenEXR images.
 //!
 //! Whatever is wrong with a file is told with its line and column where it has any; no file makes these
 //! readers panic, hang or allocate without bound.
@@ -9,6 +9,7 @@ mod mitsuba;
 mod nori;
 mod obj;
 mod ply;
+mod serialized;
 mod source;
 mod suggest;
 
@@ -23,6 +24,7 @@ pub use image::{ReadImage, decode_image, read_image, read_image_within};
 pub use nori::{SceneTest, TestKind};
 pub use obj::{ObjMesh, load_obj, load_obj_within, read_obj};
 pub use ply::{PlyMesh, read_ply};
+pub use serialized::read_serialized;
 
 /// What a scene file holds.
 #[derive(Clone, Debug)]

@@ -183,8 +183,7 @@ fn what_is_not_supported_is_told() {
     told("<bsdf type='§coating'><bsdf type='diffuse'/></bsdf>", "inside of it");
     told("<bsdf type='conductor'><string name='material' value='§TiO2'/></bsdf>", "no data of `TiO2`");
     warned(&scene("<emitter type='§sunsky'/>"), "left out");
-    warned(&scene("<shape type='§instance'/>"), "left out");
-    warned(&scene("<shape type='§disk'/>"), "triangles");
+    warned(&scene("<shape type='§sdfgrid'/>"), "left out");
     warned(&scene("§<medium type='homogeneous'/>"), "participating media");
     warned(
         &scene("<shape type='cube'>§<float name='flip_normalz' value='1'/></shape>"),
@@ -234,9 +233,43 @@ fn lights() {
     assert_eq!(light(sky), LightKind::Constant { radiance: Rgb::splat(4.0) });
     let spot = "<emitter type='spot'><float name='cutoff_angle' value='30'/><float name='beam_width' value='30'/>\
         <transform name='to_world'><lookat origin='1,2,3' target='1,2,4' up='0,1,0'/></transform></emitter>";
-    let LightKind::Spot { position, direction, inner_angle, outer_angle, .. } = light(spot) else { panic!() };
-    assert_eq!((position, direction), ([1.0, 2.0, 3.0], [0.0, 0.0, 1.0]));
+    let LightKind::LinearSpot { to_world, inner_angle, outer_angle, picture: None, .. } = light(spot) else {
+        panic!()
+    };
+    assert_eq!((to_world.point(Vec3::ZERO), to_world.vector(Vec3::Z)), (Vec3::new(1.0, 2.0, 3.0), Vec3::Z));
     assert_eq!((inner_angle, outer_angle), (30.0, 30.0));
+    let checks = "<texture type='checkerboard' name='TEXTURE'/>";
+    let behind = |angle: &str| {
+        format!(
+            "§<emitter type='spot'><float name='cutoff_angle' value='{angle}'/>{}</emitter>",
+            checks.replace("TEXTURE", "texture")
+        )
+    };
+    assert!(matches!(
+        light(&behind("40").replace('§', "")),
+        LightKind::LinearSpot { picture: Some(Texture::Checkerboard { .. }), inner_angle: 30.0, .. }
+    ));
+    refused(&scene(&behind("90")), "`cutoff_angle` below 90°");
+    let projector = format!(
+        "<emitter type='projector'><float name='fov' value='50'/><float name='scale' value='3'/>{}</emitter>",
+        checks.replace("TEXTURE", "irradiance")
+    );
+    let LightKind::Projector { irradiance, scale, fov, aspect: 1.0, .. } = light(&projector) else {
+        panic!()
+    };
+    assert!(
+        fov == 50.0
+            && scale == 3.0 * std::f32::consts::PI
+            && matches!(irradiance, Texture::Checkerboard { .. })
+    );
+    let beam = good(&scene(
+        "<shape type='sphere'/><shape type='rectangle'><emitter type='directionalarea'>\
+         <rgb name='radiance' value='1 2 3'/></emitter></shape>",
+    ));
+    let exitance = Texture::Constant(Rgb::new(1.0, 2.0, 3.0));
+    assert_eq!(beam.lights[0].kind, LightKind::Collimated { shape: 1, exitance });
+    assert_eq!(beam.shapes[1].emission, None);
+    refused(&scene("§<emitter type='directionalarea'/>"), "cannot stand alone");
     let area = good(&scene(
         "<shape type='rectangle'><emitter type='area'><rgb name='radiance' value='1 2 3'/></emitter></shape>",
     ));
@@ -271,9 +304,9 @@ fn shapes_and_their_places() {
     // Mitsuba's u is 0 at +x, ours at −x: the sphere is turned by half.
     let start = d.shapes[0].to_world.vector(-Vec3::X);
     assert!((start - Vec3::new(0.5, 0.0, 0.0)).length() < 1e-6, "{start:?}");
-    let tube = "<shape type='§cylinder'><point name='p0' value='0 0 1'/><point name='p1' value='0 4 1'/>\
+    let tube = "<shape type='cylinder'><point name='p0' value='0 0 1'/><point name='p1' value='0 4 1'/>\
         <float name='radius' value='.5'/></shape>";
-    let [low, high] = bounds(&warned(&scene(tube), "triangles"), 0);
+    let [low, high] = bounds(&good(&scene(tube)), 0);
     assert!((low - Vec3::new(-0.5, 0.0, 0.5)).length() < 1e-3, "{low:?}");
     assert!((high - Vec3::new(0.5, 4.0, 1.5)).length() < 1e-3, "{high:?}");
 }
@@ -286,7 +319,7 @@ fn normals_are_flipped_on_meshes_and_spheres() {
     assert!(mesh.normals.iter().all(|n| n.z == -1.0));
     let [a, b, c] = mesh.triangles[0].map(|i| mesh.positions[i as usize]);
     assert!((b - a).cross(c - a).z < 0.0);
-    let d = warned(&scene(&format!("<shape type='§sphere'>{flip}</shape>")), "triangles");
+    let d = good(&scene(&format!("<shape type='sphere'>{flip}</shape>")));
     let Geometry::Mesh(mesh) = &d.shapes[0].geometry else { panic!() };
     assert!(mesh.positions.iter().zip(&mesh.normals).all(|(p, n)| p.dot(*n) < 0.0));
     Scene::new(d).unwrap();

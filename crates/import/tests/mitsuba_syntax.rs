@@ -184,15 +184,15 @@ fn units_and_integers_where_numbers_are_meant() {
         let beam = "<float name='beam_width' value='45'/>";
         let d = good(&scene(&format!("<emitter type='spot'>{angle}{beam}</emitter>")));
         match d.lights[0].kind {
-            LightKind::Spot { outer_angle, .. } => outer_angle,
+            LightKind::LinearSpot { outer_angle, .. } => outer_angle,
             _ => 0.0,
         }
     };
     assert_eq!(spot("<integer name='cutoff_angle' value='45'/>"), 45.0);
     assert_eq!(spot("<float name='cutoff_angle' unit='degrees' value='45'/>"), 45.0);
-    let radians = "<emitter type='§spot'><float name='cutoff_angle' unit='rad' value='.5'/></emitter>";
-    let d = warned(&scene(radians), "falls off");
-    let LightKind::Spot { outer_angle, .. } = d.lights[0].kind else { panic!() };
+    let radians = "<emitter type='spot'><float name='cutoff_angle' unit='rad' value='.5'/></emitter>";
+    let d = good(&scene(radians));
+    let LightKind::LinearSpot { outer_angle, .. } = d.lights[0].kind else { panic!() };
     assert!((outer_angle - 28.6479).abs() < 1e-3, "{outer_angle}");
 }
 

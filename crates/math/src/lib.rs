@@ -6,6 +6,7 @@
 //!
 //! Everything here gives the same bits on every machine of the target family: see [`elementary`].
 
+mod affine;
 pub mod chi_square;
 pub mod distribution;
 pub mod elementary;
@@ -22,6 +23,7 @@ pub mod transform;
 pub mod vector;
 pub mod warp;
 
+pub use affine::Affine;
 pub use distribution::{Distribution1d, Distribution2d};
 pub use filter::{Filter, PixelFilter};
 pub use frame::Frame;

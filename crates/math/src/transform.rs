@@ -1,9 +1,9 @@
 //! Affine and projective transforms, composed in `f64`.
 
-use glam::{DMat4, DQuat, DVec3, DVec4};
+use glam::{DAffine3, DMat4, DQuat, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
-use crate::Vec3;
+use crate::{Affine, Vec3};
 
 /// A 4 × 4 transform with its inverse. Points are column vectors: `a.then(b)` applies `a` first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,6 +91,19 @@ impl Transform {
         self.forward.is_finite() && self.inverse.is_finite() && self.forward.determinant() != 0.0
     }
 
+    /// The affine map that this is, and its inverse; `None` if it is projective or cannot be inverted.
+    pub fn affine(&self) -> Option<[Affine; 2]> {
+        let flat = self.forward.row(3) == DVec4::W && self.is_invertible();
+        let rows = |a: DAffine3| {
+            let [x, y, z] = [a.matrix3.row(0), a.matrix3.row(1), a.matrix3.row(2)].map(|r| r.to_array());
+            let b = a.translation.to_array();
+            let row = |[p, q, r]: [f64; 3], s| [p, q, r, s];
+            Affine::from_rows([row(x, b[0]), row(y, b[1]), row(z, b[2])])
+        };
+        let forward = DAffine3::from_mat4(self.forward);
+        flat.then(|| [rows(forward), rows(forward.inverse())])
+    }
+
     /// Whether this mirrors space (a negative determinant of the linear part).
     pub fn mirrors(&self) -> bool {
         glam::DMat3::from_mat4(self.forward).determinant() < 0.0
@@ -155,6 +168,25 @@ mod tests {
         assert!((t.vector(Vec3::Z) - Vec3::new(0.0, 0.0, -1.0)).length() < 1e-6);
         assert!((t.vector(Vec3::X) - Vec3::new(-1.0, 0.0, 0.0)).length() < 1e-6);
         assert!(!t.mirrors());
+    }
+
+    #[test]
+    fn affine_maps_do_the_same() {
+        let t = Transform::scale([2.0, 3.0, -0.5])
+            .then(Transform::rotate(30.0, [1.0, 2.0, 3.0]))
+            .then(Transform::translate([4.0, -5.0, 6.0]));
+        let [there, back] = t.affine().unwrap();
+        let p = Vec3::new(0.3, -0.7, 1.9);
+        assert!((there.point(p) - t.point(p)).length() < 1e-6);
+        assert!((there.vector(p) - t.vector(p)).length() < 1e-6);
+        assert!((back.normal_back(p) - t.normal(p)).length() < 1e-6);
+        assert!((back.point(there.point(p)) - p).length() < 1e-6);
+        assert!((there.magnitude(p) - there.point(p).abs()).min_element() >= 0.0);
+        assert!((there.largest() - 3.0).abs() < 1.0);
+        let mut rows: [[f64; 4]; 4] = t.into();
+        rows[3] = [0.0, 0.1, 0.0, 1.0];
+        assert!(Transform::from_rows(rows).affine().is_none());
+        assert!(Transform::scale([1.0, 0.0, 1.0]).affine().is_none());
     }
 
     #[test]

@@ -21,10 +21,16 @@ pub struct SceneInfo {
     pub samples: u32,
     /// Surfaces.
     pub shapes: usize,
-    /// Triangles of all meshes.
+    /// Triangles of all meshes, those of groups once.
     pub triangles: usize,
-    /// Analytic spheres.
+    /// Analytic spheres, those of groups once.
     pub spheres: usize,
+    /// Groups of shapes.
+    pub groups: usize,
+    /// Instances of groups.
+    pub instances: usize,
+    /// Triangles that stand in the scene, those of groups in every instance.
+    pub placed_triangles: u64,
     /// Materials by kind, with how many there are.
     pub materials: Vec<(&'static str, usize)>,
     /// Lamps by kind, with how many there are.
@@ -64,6 +70,7 @@ pub struct Outline {
     integrator: &'static str,
     samples: u32,
     shapes: usize,
+    groups: usize,
     materials: Vec<(&'static str, usize)>,
     lights: Vec<(&'static str, usize)>,
 }
@@ -78,7 +85,8 @@ pub fn outline(d: &Description) -> Outline {
         camera: camera_name(&d.camera.kind),
         integrator: integrator_name(&d.integrator),
         samples: d.samples,
-        shapes: d.shapes.len(),
+        shapes: d.all_shapes().count(),
+        groups: d.groups.len(),
         materials: count(d.materials.iter().map(|m| material_name(&m.kind))),
         lights: count(area.chain(d.lights.iter().map(|l| light_name(&l.kind)))),
     }
@@ -88,6 +96,7 @@ pub fn outline(d: &Description) -> Outline {
 pub fn describe(scene: &Scene, outline: Outline) -> SceneInfo {
     let bounds = scene.bvh().bounds();
     let window = scene.film.window();
+    let [triangles, spheres] = scene.surfaces().kept();
     let pixels: usize = scene.images().iter().map(|i| size_of_val(&*i.pixels)).sum();
     SceneInfo {
         resolution: [scene.film.width, scene.film.height],
@@ -96,8 +105,11 @@ pub fn describe(scene: &Scene, outline: Outline) -> SceneInfo {
         integrator: outline.integrator,
         samples: outline.samples,
         shapes: outline.shapes,
-        triangles: scene.surfaces().triangles().len(),
-        spheres: scene.surfaces().spheres().len(),
+        triangles,
+        spheres,
+        groups: outline.groups,
+        instances: scene.surfaces().instances(),
+        placed_triangles: scene.surfaces().placed()[0],
         materials: outline.materials,
         lights: outline.lights,
         power: scene.lamps().power(),
@@ -157,7 +169,9 @@ pub(crate) fn material_name(kind: &MaterialKind) -> &'static str {
 fn light_name(kind: &LightKind) -> &'static str {
     match kind {
         LightKind::Point { .. } => "point",
-        LightKind::Spot { .. } => "spot",
+        LightKind::Spot { .. } | LightKind::LinearSpot { .. } => "spot",
+        LightKind::Projector { .. } => "projector",
+        LightKind::Collimated { .. } => "collimated surface",
         LightKind::Directional { .. } => "directional",
         LightKind::Constant { .. } => "constant environment",
         LightKind::Environment { .. } => "environment map",

@@ -59,8 +59,12 @@ pub fn content_hash(description: &mut Description) -> String {
     description.film.crop = crop.filter(|c| [c.width, c.height] != [width, height]);
     let materials: Vec<_> = description.materials.iter_mut().map(|m| m.origin.take()).collect();
     let lights: Vec<_> = description.lights.iter_mut().map(|l| l.origin.take()).collect();
-    let shapes: Vec<_> =
-        description.shapes.iter_mut().map(|s| (s.origin.take(), std::mem::take(&mut s.name))).collect();
+    let mut shapes: Vec<_> = Vec::new();
+    let Description { shapes: own, groups, instances, .. } = &mut *description;
+    let all = own.iter_mut().chain(groups.iter_mut().flat_map(|g| &mut g.shapes));
+    shapes.extend(all.map(|s| (s.origin.take(), std::mem::take(&mut s.name))));
+    let names: Vec<_> = groups.iter_mut().map(|g| (g.origin.take(), std::mem::take(&mut g.name))).collect();
+    let places: Vec<_> = instances.iter_mut().map(|i| i.origin.take()).collect();
 
     let mut hasher = blake3::Hasher::new();
     // Nothing in a description fails to be serialised, and a hash takes all that is written to it.
@@ -72,9 +76,11 @@ pub fn content_hash(description: &mut Description) -> String {
     description.film.crop = crop;
     description.materials.iter_mut().zip(materials).for_each(|(m, origin)| m.origin = origin);
     description.lights.iter_mut().zip(lights).for_each(|(l, origin)| l.origin = origin);
-    description.shapes.iter_mut().zip(shapes).for_each(|(s, (origin, name))| {
-        (s.origin, s.name) = (origin, name);
-    });
+    let Description { shapes: own, groups, instances, .. } = &mut *description;
+    let all = own.iter_mut().chain(groups.iter_mut().flat_map(|g| &mut g.shapes));
+    all.zip(shapes).for_each(|(s, known)| (s.origin, s.name) = known);
+    groups.iter_mut().zip(names).for_each(|(g, known)| (g.origin, g.name) = known);
+    instances.iter_mut().zip(places).for_each(|(i, origin)| i.origin = origin);
     hasher.finalize().to_hex().to_string()
 }
 
@@ -84,6 +90,28 @@ mod tests {
     use caustica_scene::Origin;
     use caustica_scene::description::Crop;
     use caustica_testkit::scenes;
+
+    #[test]
+    fn groups_and_instances_count() {
+        let mut scene = scenes::instanced();
+        let (hash, before) = (content_hash(&mut scene), scene.clone());
+        let origin = Some(Origin { file: "a.xml".into(), line: 3, column: 1, span: None });
+        scene.instances[0].origin = origin.clone();
+        (scene.groups[0].origin, scene.groups[0].shapes[0].origin) = (origin.clone(), origin);
+        (scene.groups[0].name, scene.groups[0].shapes[0].name) = ("a".into(), "b".into());
+        let moved = scene.clone();
+        assert_eq!(content_hash(&mut scene), hash);
+        assert_eq!(scene, moved);
+        for change in [
+            &(|d: &mut Description| _ = d.instances.pop()) as &dyn Fn(&mut Description),
+            &|d| d.instances.swap(0, 1),
+            &|d| _ = d.groups[0].shapes.pop(),
+        ] {
+            let mut changed = before.clone();
+            change(&mut changed);
+            assert_ne!(content_hash(&mut changed), hash);
+        }
+    }
 
     #[test]
     fn places_and_names_do_not_count_and_all_else_does() {

@@ -2,7 +2,8 @@
 
 use caustica_math::{Frame, SolidAnglePdf, Vec3, warp};
 
-use crate::surface::Surfaces;
+use crate::bvh::{Bounds, Bvh};
+use crate::surface::{FlatShape, Surfaces};
 
 /// The most that are kept, the largest: all of them are looked at wherever rays are aimed.
 const MOST: usize = 16;
@@ -25,9 +26,12 @@ pub struct Casters {
 }
 
 impl Casters {
-    /// The largest of the shapes with those indices.
-    pub(crate) fn new(shapes: impl Iterator<Item = u32>, surfaces: &Surfaces) -> Self {
-        let mut list: Vec<Caster> = shapes.map(|shape| ball(shape, surfaces)).collect();
+    /// The largest of the shapes that are casters, and of the instances of groups with any.
+    pub(crate) fn new(surfaces: &Surfaces, tree: &Bvh, is_caster: impl Fn(&FlatShape) -> bool) -> Self {
+        let alone = surfaces.alone().iter().filter(|s| is_caster(s)).map(|s| ball(s, surfaces));
+        let inside =
+            (0..).zip(tree.instance_boxes()).filter(|(i, _)| surfaces.inside(*i).iter().any(&is_caster));
+        let mut list: Vec<Caster> = alone.chain(inside.map(|(_, bounds)| around(bounds))).collect();
         // Stable, so that of equal ones the first are kept.
         list.sort_by(|a, b| b.radius.total_cmp(&a.radius));
         list.truncate(MOST);
@@ -118,16 +122,21 @@ impl Cone {
     }
 }
 
+/// A ball around a box.
+fn around(bounds: &Bounds) -> Caster {
+    let center = bounds.center();
+    Caster { center, radius: (bounds.max - center).length() * (1.0 + 4.0 * f32::EPSILON) }
+}
+
 /// A ball around all of a shape: around its box's centre, if it is a mesh.
-fn ball(shape: u32, surfaces: &Surfaces) -> Caster {
-    let flat = &surfaces.shapes[shape as usize];
+fn ball(flat: &FlatShape, surfaces: &Surfaces) -> Caster {
     if let Some(sphere) = surfaces.sphere(flat.first_primitive) {
         return Caster { center: sphere.center, radius: sphere.radius };
     }
     let corners = || {
         (flat.first_primitive..flat.first_primitive + flat.primitive_count).flat_map(|t| surfaces.corners(t))
     };
-    let bounds = corners().fold(crate::bvh::Bounds::EMPTY, crate::bvh::Bounds::with);
+    let bounds = corners().fold(Bounds::EMPTY, Bounds::with);
     let center = bounds.center();
     let farthest = corners().map(|p| p.distance_squared(center)).fold(0.0, f32::max);
     Caster { center, radius: farthest.sqrt() * (1.0 + 4.0 * f32::EPSILON) }

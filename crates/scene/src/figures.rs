@@ -81,7 +81,7 @@ fn metal(eta: Rgb, k: Rgb, reflectance: Rgb) -> Result<(), Diagnostic> {
 }
 
 /// How a texture lies on a surface. (Whether its colours are any is checked elsewhere.)
-fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic> {
+pub(crate) fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic> {
     let finite = |pair: &[f32; 2]| pair.iter().all(|x| x.is_finite());
     let message = match texture {
         Texture::Constant(_) => return Ok(()),

@@ -3,7 +3,7 @@
 use caustica_math::memory::{MemoryLimit, MemoryShortage};
 
 use crate::bvh::TreeQuality;
-use crate::description::{Description, Geometry, LightKind, MaterialKind, Shape};
+use crate::description::{Description, Geometry, ImageId, LightKind, MaterialKind, Shape, Texture};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::light::Light;
 
@@ -17,11 +17,17 @@ const EDGE: u64 = 28;
 /// Bytes of a triangle that emits, in the tables by which it is chosen and in those that these are made from.
 const LAMP_TRIANGLE: u64 = 24;
 
+/// Bytes of a lamp, or of a triangle of one, in the hierarchy, and in the list that this is made from.
+const LAMP_PART: u64 = 148 + 64;
+
 /// Bytes that a lamp takes beside its own: its power, its part of the choice, and what it keeps elsewhere.
 const LAMP: u64 = 256;
 
-/// Bytes of a pixel of an environment in the table by which it is chosen, and in what that is made from.
+/// Bytes of a pixel of an environment, or of a picture that is thrown, in the table by which it is chosen, and in what that is made from.
 const ENVIRONMENT_PIXEL: u64 = 12;
+
+/// Bytes of an instance: its transforms, its box, and itself in the tree.
+const INSTANCE: u64 = 400;
 
 /// The most bytes that [`Scene::within`](crate::Scene::within) takes at a time, beside the description's own.
 pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
@@ -33,7 +39,7 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
         Geometry::Sphere { .. } => (1, 64),
     };
     let (mut primitives, mut tables, mut edges, mut lamps) = (0, 0, 0, 0);
-    for shape in &d.shapes {
+    for shape in d.all_shapes() {
         let (count, bytes) = size(shape);
         primitives += count;
         tables += bytes + 48;
@@ -41,17 +47,35 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
             edges = edges.max(3 * EDGE * count);
         }
         if shape.emission.is_some() {
-            lamps += LAMP_TRIANGLE * count + LAMP + size_of::<Light>() as u64;
+            lamps += (LAMP_TRIANGLE + LAMP_PART) * count + LAMP + size_of::<Light>() as u64;
         }
     }
+    tables += INSTANCE * d.instances.len() as u64;
     for light in &d.lights {
-        lamps += LAMP + size_of::<Light>() as u64;
-        if let LightKind::Environment { image, .. } = light.kind {
-            lamps += d.images.get(image.0 as usize).map_or(0, |i| i.pixels.len() as u64 * ENVIRONMENT_PIXEL);
-        }
+        lamps += LAMP + LAMP_PART + size_of::<Light>() as u64 + tables_of(&light.kind, d);
     }
     let more = |bytes: u64| if tree == TreeQuality::Spatial { bytes * 13 / 10 } else { bytes };
     tables + more(TREE_WHILE_BUILT * primitives).max(more(TREE * primitives) + edges.max(lamps))
+}
+
+/// Bytes of the tables of a lamp.
+fn tables_of(light: &LightKind, d: &Description) -> u64 {
+    let of_image =
+        |i: &ImageId| d.images.get(i.0 as usize).map_or(0, |i| i.pixels.len() as u64 * ENVIRONMENT_PIXEL);
+    match light {
+        LightKind::Environment { image, .. } => of_image(image),
+        LightKind::Projector { irradiance: Texture::Image { image, .. }, .. } => of_image(image),
+        // A checkerboard of 64 × 64 cells.
+        LightKind::Projector { .. } => (1 << 12) * ENVIRONMENT_PIXEL,
+        LightKind::Collimated { shape, .. } => {
+            let triangles = |s: &Shape| match &s.geometry {
+                Geometry::Mesh(m) => m.triangles.len() as u64,
+                Geometry::Sphere { .. } => 1,
+            };
+            d.shapes.get(*shape as usize).map_or(0, |s| LAMP_TRIANGLE * triangles(s))
+        }
+        _ => 0,
+    }
 }
 
 /// Whether a shape may be. (What wrappers hold is not looked at.)

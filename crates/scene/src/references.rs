@@ -2,6 +2,7 @@
 
 use crate::description::{Description, LightKind, Texture};
 use crate::diagnostic::Diagnostic;
+use crate::figures::placement;
 
 /// Whether the colours of a texture are finite and none is negative. (Images are looked at apart.)
 fn is_valid(texture: &Texture) -> bool {
@@ -10,6 +11,48 @@ fn is_valid(texture: &Texture) -> bool {
         Texture::Checkerboard { value1, value2, .. } => value1.is_valid() && value2.is_valid(),
         Texture::Image { .. } => true,
     }
+}
+
+/// What a lamp refers to.
+fn light(kind: &LightKind, d: &Description) -> Result<(), Diagnostic> {
+    let texture = match kind {
+        LightKind::Environment { image, .. } if image.0 as usize >= d.images.len() => {
+            return Err(Diagnostic::error("an environment names an image that does not exist"));
+        }
+        LightKind::Collimated { shape, .. } if *shape as usize >= d.shapes.len() => {
+            return Err(Diagnostic::error("a lamp names a shape that does not exist"));
+        }
+        LightKind::Projector { irradiance: t, .. } | LightKind::Collimated { exitance: t, .. } => t,
+        LightKind::LinearSpot { picture: Some(t), .. } => t,
+        _ => return Ok(()),
+    };
+    if matches!(texture, Texture::Image { image, .. } if image.0 as usize >= d.images.len()) {
+        return Err(Diagnostic::error("a lamp's picture names an image that does not exist"));
+    }
+    if !is_valid(texture) {
+        return Err(Diagnostic::error("a lamp's colour must be finite and not negative"));
+    }
+    placement(texture, "a lamp's picture")
+}
+
+/// Groups have shapes and no lamps, and instances are of groups that exist.
+fn groups(d: &Description) -> Result<(), Diagnostic> {
+    for group in &d.groups {
+        if let Some(lamp) = group.shapes.iter().find(|s| s.emission.is_some()) {
+            let message = format!("{} is a lamp in the group {}", lamp.name, group.name);
+            return Err(Diagnostic::error(message)
+                .at(lamp.origin.clone())
+                .hint("what has instances cannot emit: put the lamp beside them"));
+        }
+    }
+    for instance in &d.instances {
+        let group = d.groups.get(instance.group.0 as usize);
+        if group.is_none_or(|g| g.shapes.is_empty()) {
+            return Err(Diagnostic::error("an instance is of a group that has no shapes or does not exist")
+                .at(instance.origin.clone()));
+        }
+    }
+    Ok(())
 }
 
 /// Every id must name something, and every colour be one.
@@ -41,7 +84,8 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
             );
         }
     }
-    for s in &d.shapes {
+    groups(d)?;
+    for s in d.all_shapes() {
         if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t))
         {
             return Err(Diagnostic::error(format!(
@@ -59,13 +103,7 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
         }
     }
     for l in &d.lights {
-        if let LightKind::Environment { image, .. } = l.kind
-            && image.0 as usize >= d.images.len()
-        {
-            return Err(
-                Diagnostic::error("an environment names an image that does not exist").at(l.origin.clone())
-            );
-        }
+        light(&l.kind, d).map_err(|e| e.at(l.origin.clone()))?;
     }
     let w = d.film.window();
     let inside =

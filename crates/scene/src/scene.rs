@@ -1,20 +1,21 @@
 //! The flat scene: what rays run on.
 
-use caustica_math::{Frame, MemoryLimit, Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
+mod lamps;
+
+use caustica_math::{Frame, MemoryLimit, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
-use crate::camera::{Camera, film_settings, shears};
+use crate::camera::{Camera, film_settings};
 use crate::casters::Casters;
-use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialKind, Texture};
-use crate::diagnostic::Diagnostic;
-use crate::light::{
-    AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Light, LightPoint, LightQuery, Lights,
-    SpotLight, Surroundings, power_through_disk,
+use crate::description::{
+    Description, FilmSettings, Image, ImageId, LightKind, MaterialId, MaterialKind, Texture,
 };
+use crate::diagnostic::Diagnostic;
+use crate::light::{AreaLight, Light, LightPoint, LightQuery, Lights, Surroundings};
 use crate::material::bsdf_at;
 use crate::references;
-use crate::surface::{FlatShape, SurfacePoint, Surfaces, is_reachable};
+use crate::surface::{FARTHEST, FlatShape, SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 use crate::traits::{self, Traits, varies};
 use crate::{figures, memory};
@@ -76,14 +77,23 @@ impl Scene {
         let traits = traits::of_all(&description.materials)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         let camera = Camera::among(&surfaces, &description.camera, &film)?;
-        for (flat, shape) in surfaces.shapes.iter_mut().zip(&description.shapes) {
+        surfaces.add_groups(&mut description, &mut warnings)?;
+        surfaces.mark(description.all_shapes().map(|shape| {
             let material = traits[shape.material.0 as usize];
-            flat.needs_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
-            flat.needs_tangents = material.is_oriented;
-            flat.is_wrapped = material.is_wrapped;
-            flat.is_mixed = material.is_mixed;
+            let uses_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
+            Traits { uses_uv, ..material }
+        }));
+        for light in &description.lights {
+            if let LightKind::Collimated { shape, exitance } = &light.kind {
+                surfaces.shapes[*shape as usize].needs_uv |= varies(exitance);
+            }
         }
-        let bvh = Bvh::with_quality(surfaces.positions(), surfaces.triangles(), &surfaces.spheres(), tree);
+        let bvh = surfaces.tree(tree).map_err(|i| {
+            let beyond = &description.instances[i as usize];
+            let name = &description.groups[beyond.group.0 as usize].name;
+            let message = format!("an instance of {name} reaches farther than {FARTHEST:e} from the origin");
+            Diagnostic::error(message).at(beyond.origin.clone())
+        })?;
         let bounds = bvh.bounds();
         let (center, radius) = if bounds.is_empty() {
             (camera.position(), 1.0)
@@ -92,8 +102,7 @@ impl Scene {
         };
         let materials = description.materials.iter().map(|m| m.kind).collect();
         let is_caster = |shape: &FlatShape| traits[shape.material as usize].is_caster;
-        let casters = (0..).zip(&surfaces.shapes).filter(|(_, s)| is_caster(s)).map(|(i, _)| i);
-        let casters = Casters::new(casters, &surfaces);
+        let casters = Casters::new(&surfaces, &bvh, is_caster);
         let images = std::mem::take(&mut description.images);
         let mut scene = Self {
             camera,
@@ -147,75 +156,7 @@ impl Scene {
                 _ => warnings.push(Diagnostic::warning("this lamp emits nothing").at(light.origin.clone())),
             }
         }
-        Ok(Lights::new(lights, &powers))
-    }
-
-    /// The lamp and its power.
-    fn flatten_light(&self, kind: &LightKind, w: Wavelengths) -> Result<Option<(Light, f64)>, &'static str> {
-        let around = self.surroundings(w);
-        let unit =
-            |d: [f32; 3]| Vec3::from(d).try_normalized().ok_or("the lamp's direction must not be zero");
-        let at = |p: [f32; 3]| {
-            let p = Vec3::from(p);
-            if is_reachable(p) { Ok(p) } else { Err("the lamp's position must be finite, and within 1e15") }
-        };
-        let colour = |c: Rgb| {
-            if c.is_valid() {
-                Ok(w.spectrum(c))
-            } else {
-                Err("a lamp's colour must be finite and not negative")
-            }
-        };
-        let full = 4.0 * std::f64::consts::PI;
-        let luminance = |s| f64::from(w.luminance(s));
-        Ok(Some(match *kind {
-            LightKind::Point { position, intensity } => {
-                let intensity = colour(intensity)?;
-                (Light::Point { position: at(position)?, intensity }, full * luminance(intensity))
-            }
-            LightKind::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-                if !(0.0 <= inner_angle
-                    && inner_angle <= outer_angle
-                    && outer_angle <= 180.0
-                    && outer_angle > 0.0)
-                {
-                    return Err("a spot's angles must satisfy 0 ≤ inner ≤ outer ≤ 180 degrees");
-                }
-                let intensity = colour(intensity)?;
-                let spot =
-                    SpotLight::new(at(position)?, unit(direction)?, intensity, inner_angle, outer_angle);
-                (Light::Spot(spot), f64::from(spot.solid_angle()) * luminance(intensity))
-            }
-            LightKind::Directional { direction, irradiance } => {
-                let irradiance = colour(irradiance)?;
-                let power = power_through_disk(luminance(irradiance), self.radius);
-                (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
-            }
-            LightKind::Constant { radiance } => {
-                let light = EnvironmentLight::Constant(colour(radiance)?);
-                let power = power_through_disk(light.flux(&around), self.radius);
-                (Light::Environment(light), power)
-            }
-            LightKind::Environment { image, to_world, scale } => {
-                let axis = |a| to_world.vector(a).try_normalized();
-                let (Some(x), Some(y), Some(z)) = (axis(Vec3::X), axis(Vec3::Y), axis(Vec3::Z)) else {
-                    return Err("the environment's transform cannot be inverted");
-                };
-                if shears([x, y, z]) {
-                    return Err("the environment's transform shears space: its axes must be at right angles");
-                }
-                if !(scale >= 0.0 && scale.is_finite()) {
-                    return Err("the environment's scale must be finite and not negative");
-                }
-                let pixels = &self.images[image.0 as usize];
-                let Some(map) = EnvironmentMap::new(image.0, pixels, scale, [x, y, z]) else {
-                    return Ok(None);
-                };
-                let light = EnvironmentLight::Map(Box::new(map));
-                let power = power_through_disk(light.flux(&around), self.radius);
-                (Light::Environment(light), power)
-            }
-        }))
+        Ok(Lights::new(lights, &powers).with_hierarchy(&powers, &self.surroundings(w)))
     }
 
     fn surroundings(&self, wavelengths: Wavelengths) -> Surroundings<'_> {
@@ -281,6 +222,11 @@ impl Scene {
     /// What is known of a shape's material.
     pub(crate) fn traits(&self, shape: u32) -> Traits {
         self.traits[self.surfaces.shapes[shape as usize].material as usize]
+    }
+
+    /// What is known of a material.
+    pub(crate) fn traits_of(&self, material: MaterialId) -> Traits {
+        self.traits[material.0 as usize]
     }
 
     /// The textures.

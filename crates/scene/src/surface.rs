@@ -2,12 +2,16 @@
 
 mod border;
 mod flatten;
+mod groups;
 mod tangents;
+
+use std::sync::Arc;
 
 use caustica_math::elementary::{asin, atan2};
 use caustica_math::{Frame, Vec2, Vec3, spherical};
 
-use crate::bvh::{Hit, SphereData};
+use crate::bvh::{Hit, Instance, SphereData};
+use groups::Group;
 
 pub(crate) use flatten::{FARTHEST, is_reachable, unreachable};
 
@@ -54,8 +58,10 @@ pub struct SurfacePoint {
     pub uv: Vec2,
     /// Index of the shape.
     pub shape: u32,
-    /// Id of the triangle or sphere.
+    /// Id of the triangle or sphere; in an instance, the id in its group.
     pub primitive: u32,
+    /// Number of the instance that it lies in; [`Hit::NO_INSTANCE`] if in none.
+    pub instance: u32,
     /// How far rays must start off the surface so that they do not meet it again, by rounding.
     pub offset: f32,
 }
@@ -71,7 +77,7 @@ impl SurfacePoint {
 /// The tables of all surfaces.
 #[derive(Debug, Default)]
 pub struct Surfaces {
-    /// Shapes in the order of the description.
+    /// Shapes in the order of the description, then those of its groups, with primitives by their ids there.
     pub shapes: Vec<FlatShape>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -79,6 +85,8 @@ pub struct Surfaces {
     triangles: Vec<[u32; 3]>,
     triangle_shapes: Vec<u32>,
     spheres: Vec<FlatSphere>,
+    groups: Vec<Group>,
+    instances: Arc<[Instance]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -143,12 +151,15 @@ impl Surfaces {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.triangle_shapes)
             + size_of_val(&*self.spheres)
+            + self.groups().map(Self::memory).sum::<usize>()
     }
 
     /// The point that was hit, coming from `origin` along `direction`.
     #[inline(always)]
     pub fn point(&self, hit: &Hit, origin: Vec3, direction: Vec3) -> SurfacePoint {
-        if (hit.primitive as usize) < self.triangles.len() {
+        if hit.instance != Hit::NO_INSTANCE {
+            self.point_inside(hit, origin, direction)
+        } else if (hit.primitive as usize) < self.triangles.len() {
             self.point_between(hit.primitive, &hit.corners, [hit.b1, hit.b2])
         } else {
             let sphere = &self.spheres[hit.primitive as usize - self.triangles.len()];
@@ -209,6 +220,7 @@ impl Surfaces {
             uv,
             shape,
             primitive,
+            instance: Hit::NO_INSTANCE,
             offset: extent * POSITION_ERROR + f32::MIN_POSITIVE,
         }
     }
@@ -239,6 +251,7 @@ impl Surfaces {
             uv,
             shape: sphere.shape,
             primitive,
+            instance: Hit::NO_INSTANCE,
             offset: (d.center.abs().max_element() + d.radius) * POSITION_ERROR + f32::MIN_POSITIVE,
         }
     }

@@ -1,8 +1,9 @@
 //! What is merely suspicious about a scene.
 
-use crate::description::{Description, MaterialKind, Texture};
+use crate::description::{Description, MaterialKind, Shape, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::scene::Scene;
+use crate::surface::Surfaces;
 
 /// Pushes a warning for everything that can be rendered but is probably not meant.
 pub(crate) fn check(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
@@ -12,7 +13,7 @@ pub(crate) fn check(scene: &Scene, description: &Description, warnings: &mut Vec
                 .hint("give a mesh or sphere an `area` emitter, or add a point or environment light"),
         );
     }
-    if description.shapes.is_empty() {
+    if description.shapes.is_empty() && description.instances.is_empty() {
         warnings.push(Diagnostic::warning("the scene has no surfaces"));
     }
     open_dielectrics(scene, description, warnings);
@@ -52,10 +53,16 @@ fn clipped(scene: &Scene, warnings: &mut Vec<Diagnostic>) {
 
 /// A dielectric mesh that is not closed, alone or by others, refracts light into a medium that it never leaves.
 fn open_dielectrics(scene: &Scene, description: &Description, warnings: &mut Vec<Diagnostic>) {
-    let transparent = |index: &usize| scene.traits(*index as u32).bounds_a_medium;
-    let shapes: Vec<usize> = (0..description.shapes.len()).filter(transparent).collect();
-    for index in scene.surfaces().unclosed(&shapes) {
-        let shape = &description.shapes[index];
+    let transparent = |shape: &Shape| scene.traits_of(shape.material).bounds_a_medium;
+    let unclosed = |surfaces: &Surfaces, shapes: &[Shape]| {
+        let candidates: Vec<usize> = (0..shapes.len()).filter(|i| transparent(&shapes[*i])).collect();
+        surfaces.unclosed(&candidates)
+    };
+    let groups = scene.surfaces().groups().zip(&description.groups);
+    let parts = groups.map(|(surfaces, group)| (surfaces, &group.shapes));
+    let parts = std::iter::once((scene.surfaces(), &description.shapes)).chain(parts);
+    let open = parts.flat_map(|(s, shapes)| unclosed(s, shapes).into_iter().map(|i| &shapes[i]));
+    for shape in open {
         warnings.push(
             Diagnostic::warning(format!(
                 "{} is transparent but not closed: what is behind its border counts as inside",

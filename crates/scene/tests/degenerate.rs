@@ -234,7 +234,15 @@ fn textures_out_of_range() {
     for scale in [-1.0, NAN, INF] {
         refused("the environment's scale", |d| {
             let image = d.add_image(Image { width: 1, height: 1, pixels: [Rgb::WHITE].into() });
-            build::light(d, LightKind::Environment { image, to_world: Transform::IDENTITY, scale });
+            build::light(
+                d,
+                LightKind::Environment {
+                    image,
+                    to_world: Transform::IDENTITY,
+                    scale,
+                    rows: Default::default(),
+                },
+            );
         });
     }
 }

@@ -69,7 +69,12 @@ fn glass_lamps_and_environments_need_more() {
     assert!(more(|d| {
         let pixels = vec![Rgb::WHITE; 1000 * 500].into();
         let image = d.add_image(Image { width: 1000, height: 500, pixels });
-        let kind = LightKind::Environment { image, to_world: Default::default(), scale: 1.0 };
+        let kind = LightKind::Environment {
+            image,
+            to_world: Default::default(),
+            scale: 1.0,
+            rows: Default::default(),
+        };
         (0..10).for_each(|_| build::light(d, kind));
     }));
 }

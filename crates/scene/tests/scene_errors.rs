@@ -125,7 +125,15 @@ fn references() {
             MaterialKind::Microfacet { alpha: 0.1, interior_ior: 1.5, exterior_ior: 1.0, kd: PICTURE };
     });
     refuses("scene.xml:9: an environment names an image that does not exist", |d| {
-        lamp(d, LightKind::Environment { image: ImageId(0), to_world: Transform::IDENTITY, scale: 1.0 });
+        lamp(
+            d,
+            LightKind::Environment {
+                image: ImageId(0),
+                to_world: Transform::IDENTITY,
+                scale: 1.0,
+                rows: Default::default(),
+            },
+        );
     });
 }
 
@@ -221,7 +229,7 @@ fn lamps_that_cannot_be() {
     {
         refuses(&format!("scene.xml:9: the environment's transform {what}"), |d| {
             let image = d.add_image(Image { width: 1, height: 1, pixels: [Rgb::WHITE].into() });
-            lamp(d, LightKind::Environment { image, to_world, scale: 1.0 });
+            lamp(d, LightKind::Environment { image, to_world, scale: 1.0, rows: Default::default() });
         });
     }
 }
@@ -238,7 +246,15 @@ fn lamps_that_emit_nothing() {
     warns(begin, |d| lamp(d, LightKind::Constant { radiance: Rgb::BLACK }));
     warns(begin, |d| {
         let image = d.add_image(Image { width: 2, height: 1, pixels: [Rgb::BLACK; 2].into() });
-        lamp(d, LightKind::Environment { image, to_world: Transform::IDENTITY, scale: 1.0 });
+        lamp(
+            d,
+            LightKind::Environment {
+                image,
+                to_world: Transform::IDENTITY,
+                scale: 1.0,
+                rows: Default::default(),
+            },
+        );
     });
     // A lamp without an area is a shape without one.
     refuses("scene.xml:4: lamp has no triangle with an area", |d| {

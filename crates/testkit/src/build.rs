@@ -3,8 +3,8 @@
 use caustica_math::{Filter, Rgb, Transform, Vec2, Vec3};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    Camera, CameraKind, FilmSettings, Geometry, Light, LightKind, MaterialId, MaterialKind, Mesh, Shape,
-    Texture,
+    Camera, CameraKind, FilmSettings, Geometry, Group, GroupId, Instance, Light, LightKind, MaterialId,
+    MaterialKind, Mesh, Shape, Texture,
 };
 
 /// A description with a small square film, a box filter and a pinhole at the origin that looks along +z.
@@ -64,6 +64,18 @@ pub fn quad(d: &mut Description, corner: [f32; 3], u: [f32; 3], v: [f32; 3], mat
         triangles: vec![[0, 1, 2], [0, 2, 3]],
     };
     add(d, "quad", Geometry::Mesh(mesh), material)
+}
+
+/// Makes a group of the shapes from number `first` on.
+pub fn group(d: &mut Description, first: usize) -> GroupId {
+    let shapes = d.shapes.split_off(first);
+    d.groups.push(Group { name: "group".into(), shapes, origin: None });
+    GroupId(d.groups.len() as u32 - 1)
+}
+
+/// Shows a group.
+pub fn instance(d: &mut Description, group: GroupId, to_world: Transform) {
+    d.instances.push(Instance { group, to_world, origin: None });
 }
 
 /// Makes a shape a lamp of grey radiance.

@@ -199,7 +199,7 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     }
     let starts = Starts {
         emission: lights.emission_pdf(lamp, narrow(emitted)),
-        next_event: lights.towards_pdf(narrow(nodes[1].at), lamp).get().into(),
+        next_event: nodes[1].surface.map_or(0.0, |v| lights.towards_pdf(v.receiver(), lamp).get().into()),
         camera: film_density,
         can_be_hit: !lights.lights.get(lamp.light).is_delta(),
     };

@@ -25,7 +25,7 @@ pub fn bytes_of_seed(seed: u64) -> Vec<u8> {
     (0..64).flat_map(word).collect()
 }
 
-/// A scene: one to six shapes of any material, up to three lamps beside those that are surfaces, any camera, and a
+/// A scene: one to six shapes of any material, now and then one of them as instances, up to three lamps beside those that are surfaces, any camera, and a
 /// film of a few pixels with any filter. A quarter of all scenes has numbers at the edges of what is valid.
 ///
 /// Everything is valid for [`caustica_scene::Scene::new`] but what rounding may spoil at extreme scales.
@@ -44,6 +44,9 @@ pub fn random_scene(choices: &mut Choices) -> Description {
     }
     for _ in 0..choices.below(4) {
         lamp(&mut d, scale, choices);
+    }
+    if choices.below(4) == 3 {
+        things::instances(&mut d, scale, choices);
     }
     d
 }
@@ -123,6 +126,7 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
             image: caustica_scene::description::ImageId(choices.below(2) as u32),
             to_world: Transform::rotate(f64::from(choices.signed()) * 180.0, [0.0, 1.0, 0.3]),
             scale: choices.unit(),
+            rows: Default::default(),
         },
     };
     light(d, kind);

@@ -17,12 +17,33 @@ pub struct Row {
     pub what: &'static str,
     /// Where it was told of.
     pub threads: &'static str,
+    /// The transport crate's test of it: its file without `.rs`, and its name.
+    pub test: (&'static str, &'static str),
+    /// Whether all integrators could be wrong alike, so that only the test tells, by figures that are known.
+    pub shared: bool,
     /// A scene that would show it.
     pub scene: Description,
 }
 
-fn row(what: &'static str, threads: &'static str, scene: Description) -> Row {
-    Row { what, threads, scene }
+fn row(
+    what: &'static str,
+    threads: &'static str,
+    test: (&'static str, &'static str),
+    scene: Description,
+) -> Row {
+    Row { what, threads, test, shared: false, scene }
+}
+
+impl Row {
+    /// An error that integrators can share.
+    fn shared(self) -> Self {
+        Self { shared: true, ..self }
+    }
+}
+
+/// A test of `tests/known_failures.rs`.
+fn named(test: &'static str) -> (&'static str, &'static str) {
+    ("known_failures", test)
 }
 
 /// All rows but that on media, which are not rendered yet.
@@ -39,21 +60,62 @@ fn shading_and_weights() -> Vec<Row> {
         row(
             "shading normals: light walks lack the adjoint factor",
             "pbrt-v4 #385, #526, #13; pbrt-v3 #94",
+            named("shading_normals"),
             leaning_normals(grey),
         ),
-        row("the same on rough glass", "pbrt-v4 #385", leaning_normals(rough_glass_kind())),
-        row("weights with specular chains", "pbrt-v4 #326", specular_chains()),
-        row("next-event and emission densities mixed up", "found by reading", unequal_lamps()),
-        row("single-strategy images black or wrong", "pbrt-v4 #299", ball(plastic_kind())),
-        row("roulette missing from the weights", "measured on LuxCore BIDIR 2.11", long_paths()),
+        row(
+            "the same on rough glass",
+            "pbrt-v4 #385",
+            named("shading_normals"),
+            leaning_normals(rough_glass_kind()),
+        ),
+        row(
+            "weights with specular chains",
+            "pbrt-v4 #326",
+            named("specular_chains_between_diffuse_surfaces"),
+            specular_chains(),
+        ),
+        row(
+            "next-event and emission densities mixed up",
+            "found by reading",
+            named("light_sampler_densities"),
+            unequal_lamps(),
+        ),
+        row(
+            "single-strategy images black or wrong",
+            "pbrt-v4 #299",
+            named("single_strategies"),
+            ball(plastic_kind()),
+        ),
+        row(
+            "roulette missing from the weights",
+            "measured on LuxCore BIDIR 2.11",
+            named("roulette"),
+            long_paths(),
+        )
+        .shared(),
         row(
             "black through glass, light lost behind glass",
             "mitsuba3 #181, #916; pbrt-v3 #197; pbrt-v4 #228",
+            ("strategies", "radiance_inside_glass"),
             bulb(),
-        ),
-        row("nested interfaces", "mitsuba3 #181", nested_interfaces()),
-        row("caustics only with flipped normals", "BlendLuxCore #758", caster(true)),
-        row("negative scale with vertex normals, lamps that flip", "pbrt-v3 #229", mirrored(true)),
+        )
+        .shared(),
+        row("nested interfaces", "mitsuba3 #181", named("behind_glass"), nested_interfaces()),
+        row(
+            "caustics only with flipped normals",
+            "BlendLuxCore #758",
+            named("flipped_normals"),
+            caster(true),
+        )
+        .shared(),
+        row(
+            "negative scale with vertex normals, lamps that flip",
+            "pbrt-v3 #229",
+            named("mirrored_transforms"),
+            mirrored(true),
+        )
+        .shared(),
     ]
 }
 
@@ -84,20 +146,29 @@ fn cameras_and_films() -> Vec<Row> {
     around.camera.to_world = caustica_math::Transform::translate([0.2, 0.4, -0.5]);
     (around.film.width, around.film.height) = (32, 16);
     vec![
-        row("thin lens: splats miss vignetting or lens density", "pbrt-v4 #458", lamp_out_of_focus()),
-        row("crop window: splats normalised differently", "pbrt-v4 #347", cropped),
+        row(
+            "thin lens: splats miss vignetting or lens density",
+            "pbrt-v4 #458",
+            named("thin_lens"),
+            lamp_out_of_focus(),
+        ),
+        row("crop window: splats normalised differently", "pbrt-v4 #347", named("crop_window"), cropped)
+            .shared(),
         row(
             "orthographic cameras abort or are refused",
             "pbrt-v4 #279; LuxCore #667",
+            named("all_cameras"),
             with(CameraKind::Orthographic),
         ),
-        row("360° cameras abort or are refused", "mitsuba3 #198", around),
-        row("the pixel filter is ignored by light tracing", "LuxCore #413", filtered),
+        row("360° cameras abort or are refused", "mitsuba3 #198", named("all_cameras"), around),
+        row("the pixel filter is ignored by light tracing", "LuxCore #413", named("pixel_filters"), filtered),
         row(
             "the same seed on every thread",
             "SORT #35; mitsuba #184; LuxCore #255",
+            named("seeds"),
             ball(rough_glass_kind()),
-        ),
+        )
+        .shared(),
     ]
 }
 
@@ -111,15 +182,56 @@ fn lamps_and_scenes() -> Vec<Row> {
     light(&mut constant, LightKind::Constant { radiance: Rgb::WHITE });
     let sun = LightKind::Directional { direction: [0.2, -0.3, 1.0], irradiance: Rgb::splat(3.0) };
     vec![
-        row("narrow spots, spot cosines in emission densities", "pbrt-v4 #362, #468", spot(true, 3.0, 4.0)),
-        row("closed white furnace fails", "mitsuba #80", white),
-        row("a scene lit by an environment map alone is black", "sig-graphics-audio #42", alone),
-        row("a constant environment and nothing else", "mitsuba #80", constant),
-        row("a point light produces fireflies of 80,000 and more", "mitsuba #132", point_at_the_floor()),
-        row("large interiors: PT ≠ BDPT by percents", "pbrt-v3 #73, #87, #179", three_rooms()),
-        row("brightness depends on distance (a thousandth)", "LuxCore #678, #237", scaled(1e-3)),
-        row("brightness depends on distance (a thousandfold)", "LuxCore #239, #216", scaled(1e3)),
-        row("irradiance off by π between light types", "LuxCore #580", lit_by(sun)),
-        row("textured emitters sampled wrongly", "mitsuba3 #1363; BlendLuxCore #79", textured_emitters()),
+        row(
+            "narrow spots, spot cosines in emission densities",
+            "pbrt-v4 #362, #468",
+            named("narrow_spots"),
+            spot(true, 3.0, 4.0),
+        ),
+        row("closed white furnace fails", "mitsuba #80", named("closed_furnace"), white).shared(),
+        row(
+            "a scene lit by an environment map alone is black",
+            "sig-graphics-audio #42",
+            named("environment_alone"),
+            alone,
+        )
+        .shared(),
+        row("a constant environment and nothing else", "mitsuba #80", named("environment_alone"), constant)
+            .shared(),
+        row(
+            "a point light produces fireflies of 80,000 and more",
+            "mitsuba #132",
+            named("point_light_fireflies"),
+            point_at_the_floor(),
+        )
+        .shared(),
+        row(
+            "large interiors: PT ≠ BDPT by percents",
+            "pbrt-v3 #73, #87, #179",
+            named("large_interior"),
+            three_rooms(),
+        ),
+        row(
+            "brightness depends on distance (a thousandth)",
+            "LuxCore #678, #237",
+            named("scale"),
+            scaled(1e-3),
+        )
+        .shared(),
+        row(
+            "brightness depends on distance (a thousandfold)",
+            "LuxCore #239, #216",
+            named("scale"),
+            scaled(1e3),
+        )
+        .shared(),
+        row("irradiance off by π between light types", "LuxCore #580", named("irradiance"), lit_by(sun))
+            .shared(),
+        row(
+            "textured emitters sampled wrongly",
+            "mitsuba3 #1363; BlendLuxCore #79",
+            named("emitters_with_textures"),
+            textured_emitters(),
+        ),
     ]
 }

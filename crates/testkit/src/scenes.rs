@@ -6,7 +6,9 @@ use caustica_scene::description::{
     CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Texture, TextureTransform,
 };
 
-use crate::build::{add, diffuse, ellipsoid, emit, light, look, point_light, quad, scene, sphere};
+use crate::build::{
+    add, diffuse, ellipsoid, emit, group, instance, light, look, point_light, quad, scene, sphere,
+};
 
 /// Inside of a sphere of albedo ½ and emission ½: radiance 1 everywhere. The sphere's normals point out, so it is
 /// made of a mesh turned inside out; see [`inside_out`].
@@ -117,13 +119,48 @@ pub fn smooth_mesh(kind: MaterialKind) -> Description {
     d
 }
 
+/// The box with three instances of a glass egg on a tile beside a metal ball: turned, stretched and mirrored.
+pub fn instanced() -> Description {
+    let mut d = open_box();
+    let first = d.shapes.len();
+    let (glass, red) = (d.add_material(glass_kind(false)), diffuse(&mut d, 0.5));
+    let metal = d.add_material(metal_kind(Some(0.3)));
+    add(&mut d, "egg", Geometry::Mesh(ellipsoid(6, [0.3, 0.4, 0.3])), glass);
+    d.shapes[first].to_world = Transform::translate([0.0, 0.45, 0.0]);
+    quad(&mut d, [-0.4, 0.0, -0.4], [0.0, 0.0, 0.8], [0.8, 0.0, 0.0], red);
+    sphere(&mut d, [0.45, 0.2, 0.0], 0.15, metal);
+    let group = group(&mut d, first);
+    let turned = Transform::rotate(40.0, [0.0, 1.0, 0.2]);
+    for (change, to) in [
+        (turned.then(Transform::scale([0.9; 3])), [-0.45, -0.9, 0.2]),
+        (Transform::scale([0.7, 1.1, 0.8]).then(turned), [0.5, -0.95, -0.2]),
+        (Transform::scale([-0.6, 0.8, 0.5]), [0.1, 0.0, 0.5]),
+    ] {
+        instance(&mut d, group, change.then(Transform::translate(to)));
+    }
+    d
+}
+
+/// The same scene without groups: every instance has shapes of its own.
+pub fn flattened(mut d: Description) -> Description {
+    let groups = std::mem::take(&mut d.groups);
+    for i in std::mem::take(&mut d.instances) {
+        let shapes = groups[i.group.0 as usize].shapes.iter().cloned();
+        d.shapes.extend(shapes.map(|mut s| {
+            s.to_world = s.to_world.then(i.to_world);
+            s
+        }));
+    }
+    d
+}
+
 /// An environment with a sun, as an image of 16 × 8 pixels.
 pub fn sky(d: &mut Description) {
     let mut pixels: Vec<Rgb> = (0..128).map(|i| Rgb::splat(0.3 + 0.02 * (i % 16) as f32)).collect();
     pixels[2 * 16 + 5] = Rgb::new(60.0, 50.0, 40.0);
     let image = d.add_image(Image { width: 16, height: 8, pixels: pixels.into() });
     let to_world = Transform::rotate(40.0, [0.0, 1.0, 0.2]);
-    light(d, LightKind::Environment { image, to_world, scale: 0.5 });
+    light(d, LightKind::Environment { image, to_world, scale: 0.5, rows: Default::default() });
 }
 
 /// A ball on a floor under a sky.

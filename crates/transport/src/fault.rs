@@ -7,9 +7,11 @@ use std::sync::atomic::{AtomicU8, Ordering};
 /// What can be made wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// Light walks forget the ratio of cosines that makes scattering the same both ways.
+    /// Light walks forget the ratio of cosines that makes scattering the same both ways, where they go on and where
+    /// they are joined.
     Adjoint,
-    /// The two densities of scattering are mixed up in weights.
+    /// The two densities of scattering are mixed up in the weights of eye walks, where they go on and where they are
+    /// joined. (In those of both walks it would change no mean: weights would still add up to one.)
     SwappedDensities,
     /// Hits are weighed as if next-event estimation were half as likely as it is.
     NextEventDensity,

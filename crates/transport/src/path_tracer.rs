@@ -1,11 +1,11 @@
 //! Unidirectional path tracing in its three techniques, direct light, and Whitted's chains. Written apart from
 //! the bidirectional integrator, so that the two check each other.
 
-use caustica_math::{SampleId, Spectrum, Vec3};
+use caustica_math::{SampleId, Spectrum};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 use caustica_scene::description::Technique;
-use caustica_scene::light::LightPoint;
+use caustica_scene::light::{LightPoint, Receiver};
 
 use crate::edge::Edge;
 use crate::kernel::{EyeSample, Kernel};
@@ -22,7 +22,7 @@ enum Arrival {
     /// From the camera, or by a Dirac lobe: next-event estimation could not have made this path.
     Sure,
     /// From a place, by a direction of that solid-angle density.
-    Sampled { from: Vec3, pdf: f32 },
+    Sampled { from: Receiver, pdf: f32 },
 }
 
 /// What a path does after its first surface without Dirac lobes.
@@ -92,7 +92,7 @@ impl Kernel<'_> {
             arrival = if delta {
                 Arrival::Sure
             } else {
-                Arrival::Sampled { from: vertex.point.position, pdf: s.forward.0 }
+                Arrival::Sampled { from: vertex.receiver(), pdf: s.forward.0 }
             };
             if roulette {
                 // The throughput without the radiance scale of refraction.
@@ -132,7 +132,7 @@ impl Kernel<'_> {
             Technique::Materials => 1.0,
             Technique::Emitters => 0.0,
             Technique::Mis => {
-                let (direction, distance) = lamp.direction_from(*from);
+                let (direction, distance) = lamp.direction_from(from.at);
                 let hit = pdf * Edge::of_length(distance).jacobian(lamp.cos(direction));
                 let found = self.scene.lights(self.wavelengths).towards_pdf(*from, lamp);
                 self.heuristic.share(hit, found.0)
@@ -148,7 +148,7 @@ impl Kernel<'_> {
         (choice, u): ([f32; 2], [f32; 2]),
     ) -> Spectrum {
         let lights = self.scene.lights(self.wavelengths);
-        let Some(found) = lights.sample_towards(vertex.point.position, choice, u) else {
+        let Some(found) = lights.sample_towards(vertex.receiver(), choice, u) else {
             return Spectrum::ZERO;
         };
         let Some(scatter) = vertex.scatter(Walk::FromCamera, found.direction) else { return Spectrum::ZERO };

@@ -4,6 +4,7 @@ use caustica_math::{Frame, SolidAnglePdf, Spectrum, Vec3, Wavelengths};
 use caustica_scene::Scene;
 use caustica_scene::bsdf::{Bsdf, Bump, Evaluated, Walk};
 use caustica_scene::description::BumpRule;
+use caustica_scene::light::Receiver;
 use caustica_scene::surface::SurfacePoint;
 
 use crate::fault::{Fault, is_planted};
@@ -53,6 +54,18 @@ pub struct Scatter {
     pub forward: SolidAnglePdf,
     /// Density of the previous direction, by the opposite walk.
     pub reverse: SolidAnglePdf,
+}
+
+impl Scatter {
+    /// With its densities mixed up, if that fault is planted.
+    #[inline]
+    pub(crate) fn perhaps_swapped(self) -> Self {
+        if is_planted(Fault::SwappedDensities) {
+            Self { forward: self.reverse, reverse: self.forward, ..self }
+        } else {
+            self
+        }
+    }
 }
 
 impl Vertex {
@@ -179,14 +192,8 @@ impl Vertex {
         let scatter = match walk {
             Walk::FromCamera => {
                 let e = self.eval(local, local_prev);
-                if is_planted(Fault::SwappedDensities) {
-                    return (!e.value.is_black()).then_some(Scatter {
-                        value: e.value,
-                        forward: e.to_camera_pdf,
-                        reverse: e.to_light_pdf,
-                    });
-                }
                 Scatter { value: e.value, forward: e.to_light_pdf, reverse: e.to_camera_pdf }
+                    .perhaps_swapped()
             }
             Walk::FromLight => {
                 let e = self.eval(local_prev, local);
@@ -216,6 +223,7 @@ impl Vertex {
         }
         let value = match walk {
             Walk::FromCamera => s.value,
+            Walk::FromLight if is_planted(Fault::Adjoint) => s.value,
             Walk::FromLight => s.value * (cos.abs() / self.cos(self.prev)),
         };
         Some((next, Scatter { value, forward: s.pdf, reverse: s.reverse_pdf }, s.delta))
@@ -226,6 +234,19 @@ impl Vertex {
     #[inline]
     pub fn radiance_scale(&self, to_light: Vec3) -> f32 {
         self.bsdf.radiance_scale(self.side(to_light), self.local_prev().z)
+    }
+
+    /// How the vertex looks for lamps. (Of what scatters on one side alone, both ends of a path are on that side: whichever
+    /// of them `prev` leads to, the normal is the same.)
+    #[inline]
+    pub fn receiver(&self) -> Receiver {
+        // A bump scatters towards what is below the surface's own horizon, too.
+        let normal = match self.bsdf.transmits() || self.bump.is_some() {
+            true => Vec3::ZERO,
+            false if self.local.z < 0.0 => -self.point.frame.z,
+            false => self.point.frame.z,
+        };
+        Receiver { at: self.point.position, normal }
     }
 
     /// Whether the vertex can be joined with another.

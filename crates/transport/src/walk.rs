@@ -161,6 +161,7 @@ impl Kernel<'_> {
             path.failed = true;
             return false;
         }
+        let scatter = if walk == Walk::FromCamera { scatter.perhaps_swapped() } else { scatter };
         flight.pdf = scatter.forward.0;
         flight.from = Some(vertex.point.position);
         flight.cos = vertex.cos(direction);
@@ -201,7 +202,7 @@ impl Kernel<'_> {
                 let mut sums = RunningSums::default();
                 if self.classes.next_event {
                     // One vertex less is s = 1, which finds the lamp by another density.
-                    let found = lights.towards_pdf(vertex.point.position, &emission.point);
+                    let found = lights.towards_pdf(vertex.receiver(), &emission.point);
                     sums.recent = found.0 * emitted * inverse;
                 }
                 if self.classes.hit && !lights.lights.get(emission.point.light).is_delta() {

@@ -1,9 +1,9 @@
 //! Block by block, `naive`, `path`, `light` and `bdpt` (and parts of it) agree: Welch's t-test at a significance
 //! of 10⁻³ a pair of pictures, Šidák-corrected over the blocks; seeds are fixed.
 
-use caustica_math::{Filter, Rgb};
+use caustica_math::{Filter, Rgb, Transform};
 use caustica_scene::Description;
-use caustica_scene::description::{BumpRule, CameraKind, Crop, LightKind, MaterialId};
+use caustica_scene::description::{BumpRule, CameraKind, Crop, Geometry, LightKind, MaterialId, Texture};
 use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten};
 use caustica_testkit::build::quad;
 use caustica_testkit::materials::{bump, frosted, leaves, normal_map, thin_glass, two_sided};
@@ -109,6 +109,25 @@ fn environment_light() {
 }
 
 #[test]
+fn instances() {
+    check("instances", instanced(), 1500, &[Bdpt, Naive, Path]);
+    // Not stretched, as normals between corners are mixed before they are stretched in an instance, and after it in
+    // what has corners of its own.
+    let mut even = instanced();
+    even.instances.truncate(2);
+    let [turned, mirrored] = [&[0.8, 0.8, 0.8], &[-0.7, 0.7, 0.7]].map(|s| Transform::scale(*s));
+    even.instances[0].to_world = turned.then(Transform::translate([-0.4, -0.9, 0.0]));
+    even.instances[1].to_world =
+        mirrored.then(Transform::rotate(25.0, [0.2, 1.0, 0.0])).then(Transform::translate([0.4, -0.3, 0.2]));
+    let plan = Plan { passes: 1500, block: 4, only: None };
+    let estimates = [even.clone(), flattened(even)]
+        .map(flatten)
+        .each_ref()
+        .map(|scene| estimate(scene, &Bdpt.settings(u64::from(scene.surfaces().instances() > 0)), plan));
+    agree(&estimates[0], &estimates[1]).unwrap_or_else(|e| panic!("instances differ from shapes in {e}"));
+}
+
+#[test]
 fn delta_lights() {
     let white = Rgb::splat(3.0);
     let point = LightKind::Point { position: [0.3, 0.6, -0.2], intensity: white };
@@ -124,6 +143,55 @@ fn delta_lights() {
     check("spot", lit_by(spot(20.0, 35.0)), 400, &[Bdpt, Path, Light]);
     check("narrow spot", lit_by(spot(6.0, 7.0)), 800, &[Bdpt, Light, ODD]);
     check("sun", lit_by(sun), 400, &[Bdpt, Path, Light, ODD]);
+}
+
+/// Many lamps, which the hierarchy chooses from, over two sides of glass.
+#[test]
+fn many_lamps() {
+    use caustica_testkit::build::{add, ellipsoid, emit, point_light, sphere};
+    let mut d = open_box();
+    let m = caustica_testkit::build::diffuse(&mut d, 0.4);
+    let ball = add(&mut d, "ball", Geometry::Mesh(ellipsoid(6, [0.3, 0.2, 0.25])), m);
+    d.shapes[ball].to_world = Transform::translate([-0.5, -0.3, 0.3]);
+    emit(&mut d, ball, 2.0);
+    for i in 0..6 {
+        let bulb = sphere(&mut d, [0.25 * i as f32 - 0.6, -0.8, -0.4], 0.05, m);
+        emit(&mut d, bulb, 1.0 + i as f32);
+    }
+    check("many lamps", d.clone(), 600, &[Bdpt, Naive, Path, Emitters, Light, ODD]);
+    let pane = d.add_material(rough_glass_kind());
+    sphere(&mut d, [0.3, 0.1, 0.0], 0.4, pane);
+    caustica_testkit::build::light(&mut d, LightKind::Constant { radiance: Rgb::splat(0.2) });
+    check("many lamps and glass", d.clone(), 600, &[Bdpt, Naive, Path, Light]);
+    (0..8).for_each(|i| point_light(&mut d, [0.2 * i as f32 - 0.8, 0.5, 0.2], 0.3));
+    check("many points", d, 600, &[Bdpt, Path, Light, ODD]);
+}
+
+#[test]
+fn pictures_and_beams() {
+    let to_world = Transform::look_at([0.5, 0.7, -0.5], [0.1, -0.3, 0.0], [0.0, 0.0, 1.0]);
+    let (value1, value2) = (Rgb([9.0, 3.0, 1.0]), Rgb::splat(0.5));
+    let checks = Texture::Checkerboard { delta: [0.1, 0.2], scale: [0.3, 0.4], value1, value2 };
+    let projector = LightKind::Projector { to_world, irradiance: checks, scale: 1.0, fov: 70.0, aspect: 1.3 };
+    check("projector", lit_by(projector), 400, &[Bdpt, Path, Light, ODD]);
+    let intensity = Rgb::splat(3.0);
+    let (inner_angle, outer_angle) = (10.0, 45.0);
+    let spot = LightKind::LinearSpot { to_world, intensity, picture: Some(checks), inner_angle, outer_angle };
+    check("linear spot", lit_by(spot), 400, &[Bdpt, Path, Light]);
+    let mut beam = lit_by(projector);
+    beam.lights.clear();
+    let lamp = caustica_testkit::build::quad(
+        &mut beam,
+        [-0.3, 0.9, -0.3],
+        [0.6, 0.1, 0.0],
+        [0.0, 0.0, 0.6],
+        caustica_scene::description::MaterialId(0),
+    );
+    caustica_testkit::build::light(
+        &mut beam,
+        LightKind::Collimated { shape: lamp as u32, exitance: Rgb::splat(3.0).into() },
+    );
+    check("beam", beam, 600, &[Bdpt, Light]);
 }
 
 #[test]
@@ -147,7 +215,7 @@ fn cameras() {
     check("thin lens", with(lens), 400, &[Bdpt, Path, Light]);
     check("orthographic", with(CameraKind::Orthographic), 400, &[Bdpt, Path, Light, ODD]);
     let mut around = with(CameraKind::Environment);
-    around.camera.to_world = caustica_math::Transform::translate([0.1, 0.2, -0.3]);
+    around.camera.to_world = Transform::translate([0.1, 0.2, -0.3]);
     around.film.filter = Filter::Gaussian { radius: 2.0, stddev: 0.7 };
     check("360°", around, 400, &[Bdpt, Path, Light]);
     let mut sky = under_the_sky(plastic_kind());

@@ -430,7 +430,15 @@ fn irradiance() {
     check("constant").is(lit(LightKind::Constant { radiance: unit }), 0.5, 0.01, &all);
     let map = with(&|d| {
         let image = d.add_image(Image { width: 8, height: 4, pixels: vec![unit; 32].into() });
-        build::light(d, LightKind::Environment { image, to_world: Default::default(), scale: 1.0 });
+        build::light(
+            d,
+            LightKind::Environment {
+                image,
+                to_world: Default::default(),
+                scale: 1.0,
+                rows: Default::default(),
+            },
+        );
     });
     check("map").is(map, 0.5, 0.02, &all);
     // A ball of radius r and radiance L lights a plate that it does not touch like a point of intensity πLr².

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use caustica_math::{Filter, Rgb, Transform, Vec2};
 use caustica_scene::description::{
-    BumpRule, CameraKind, Crop, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind, Texture,
-    TextureTransform,
+    BumpRule, CameraKind, Crop, EnvironmentRows, Geometry, Image, ImageId, LightKind, MaterialId,
+    MaterialKind, Texture, TextureTransform,
 };
 use caustica_scene::{Description, Scene};
 use caustica_testkit::agreement::flatten;
@@ -257,6 +257,12 @@ fn rough_materials() {
     verify("microfacet", ball(microfacet()));
 }
 
+/// Glass eggs, tiles and metal balls in three instances.
+#[test]
+fn instances() {
+    verify("instances", caustica_testkit::scenes::instanced());
+}
+
 #[test]
 fn shading_normals() {
     verify("diffuse egg", egg(room(), MaterialKind::Diffuse { albedo: Rgb([0.9, 0.7, 0.5]).into() }));
@@ -331,7 +337,7 @@ fn image(d: &mut Description, width: u32, height: u32) -> ImageId {
 fn environment(d: &mut Description) {
     let image = image(d, 8, 4);
     let to_world = Transform::rotate(35.0, [1.0, 2.0, 0.5]);
-    light(d, LightKind::Environment { image, to_world, scale: 0.7 });
+    light(d, LightKind::Environment { image, to_world, scale: 0.7, rows: Default::default() });
 }
 
 fn sky(d: &mut Description) {
@@ -360,6 +366,11 @@ fn lit(lamps: &[fn(&mut Description)]) -> Description {
 fn lamps_at_infinity() {
     verify("sky", lit(&[sky]));
     verify("environment map", lit(&[environment]));
+    let mut d = lit(&[environment]);
+    if let LightKind::Environment { rows, .. } = &mut d.lights[0].kind {
+        *rows = EnvironmentRows::OnPoles;
+    }
+    verify("rows on the poles", d);
     let mut d = lit(&[sky, environment]);
     lamp(&mut d);
     verify("two skies and a lamp", d);
@@ -431,6 +442,67 @@ fn textured_and_many_lamps() {
     let bulb = sphere(&mut d, [0.6, -0.6, -0.2], 0.2, MaterialId(1));
     emit(&mut d, bulb, 2.0);
     verify("many lamps", d);
+}
+
+/// Lamps that the hierarchy chooses from: a ball of triangles, and what stands around it.
+#[test]
+fn hierarchy_of_lamps() {
+    let mut d = egg(closed(), rough_dielectric(1.5, 1.0));
+    let m = coloured(&mut d, [0.3, 0.5, 0.4]);
+    let ball = add(&mut d, "ball", Geometry::Mesh(ellipsoid(4, [0.25, 0.15, 0.2])), m);
+    d.shapes[ball].to_world = Transform::translate([-0.4, 0.4, 0.3]);
+    emit(&mut d, ball, 2.0);
+    lamp(&mut d);
+    verify("ball of lamps", d.clone());
+    let bulb = sphere(&mut d, [0.6, -0.6, -0.2], 0.2, m);
+    emit(&mut d, bulb, 2.0);
+    (0..5).for_each(|i| point_light(&mut d, [0.15 * i as f32 - 0.3, 0.5, -0.2], 0.1));
+    verify("lamps of all kinds", d.clone());
+    spot(&mut d);
+    sky(&mut d);
+    // Open to the sky, with both sides of a pane of glass.
+    d.shapes.remove(0);
+    let pane = d.add_material(dielectric(1.4));
+    quad(&mut d, [-0.5, -0.7, -0.3], [0.6, 0.0, 0.2], [0.0, 0.6, 0.1], pane);
+    verify("lamps before and behind glass", d);
+}
+
+/// Points that throw pictures.
+#[test]
+fn pictures_that_are_thrown() {
+    let to_world = Transform::look_at([-0.3, 0.8, 0.3], [0.1, -0.2, 0.4], [0.0, 0.3, 1.0]);
+    let base = egg(closed(), microfacet());
+    let mut d = base.clone();
+    let picture = Texture::Image { image: image(&mut d, 5, 3), transform: TextureTransform::default() };
+    let intensity = Rgb([3.0, 2.0, 1.0]);
+    let (inner_angle, outer_angle) = (10.0, 60.0);
+    let kind =
+        LightKind::LinearSpot { to_world, intensity, picture: Some(picture), inner_angle, outer_angle };
+    light(&mut d, kind);
+    verify_without(hits, "spot behind a picture", d.clone());
+    d.lights.clear();
+    light(&mut d, LightKind::Projector { to_world, irradiance: picture, scale: 2.0, fov: 80.0, aspect: 1.6 });
+    verify_without(hits, "projector", d);
+}
+
+/// Light along normals: no eye path finds its lamp.
+#[test]
+fn beams_along_normals() {
+    let mut d = egg(closed(), rough_dielectric(1.5, 1.0));
+    let m = coloured(&mut d, [0.3, 0.4, 0.5]);
+    let lamp = quad(&mut d, [-0.4, 0.65, 0.1], [0.8, 0.1, 0.0], [0.0, -0.3, 0.6], m);
+    light(&mut d, LightKind::Collimated { shape: lamp as u32, exitance: Rgb([3.0, 2.0, 1.0]).into() });
+    verify_without(|s| s.s < 2, "beam", d.clone());
+    lamp_beside(&mut d);
+    verify("beam and lamps", d);
+}
+
+fn lamp_beside(d: &mut Description) {
+    for i in 0..9 {
+        let x = 0.15 * i as f32 - 0.6;
+        let q = quad(d, [x, -0.9, 0.6], [0.0, 0.1, 0.0], [0.1, 0.0, 0.0], MaterialId(0));
+        emit(d, q, 5.0);
+    }
 }
 
 /// A room with a lamp, a mirror and a rough egg, whose camera is still to be chosen.

@@ -14,9 +14,10 @@ const SAMPLES: u32 = 512;
 
 fn main() -> ExitCode {
     println!(
-        "| what goes wrong elsewhere | told of in | estimators that agree | too noisy | tests | smallest p | mismatches |"
+        "| what goes wrong elsewhere | told of in | estimators that agree | too noisy | tests | smallest p | mismatches | \
+         test of its own |"
     );
-    println!("|---|---|--:|--:|--:|--:|--:|");
+    println!("|---|---|--:|--:|--:|--:|--:|---|");
     let mut all = 0;
     for row in rows() {
         let scene = match Scene::new(row.scene) {
@@ -41,11 +42,14 @@ fn main() -> ExitCode {
         let mismatches = count(Verdict::Mismatch);
         all += mismatches;
         println!(
-            "| {} | {} | {} | {} | {tests} | {smallest:.1e} | {mismatches} |",
+            "| {} | {} | {} | {} | {tests} | {smallest:.1e} | {mismatches} | {}`{}::{}` |",
             row.what,
             row.threads,
             count(Verdict::Agrees),
-            count(Verdict::TooNoisy)
+            count(Verdict::TooNoisy),
+            if row.shared { "shared: " } else { "" },
+            row.test.0,
+            row.test.1
         );
     }
     if all == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }

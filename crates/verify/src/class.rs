@@ -4,7 +4,8 @@ use std::fmt;
 
 use caustica_scene::Scene;
 use caustica_scene::camera::Joins;
-use caustica_scene::light::LightPoint;
+use caustica_scene::light::{Light, LightPoint};
+use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Strategy};
 
 /// What stands at the lamp's end of a path.
@@ -16,12 +17,17 @@ pub enum LampEnd {
     Environment,
     /// A lamp without extent, in place or direction: a point, a spot, a sun. No path hits it by chance.
     Dirac,
+    /// A surface that shines along its normals alone: it is neither hit, nor found by looking for it.
+    Collimated,
 }
 
 impl LampEnd {
     /// That of a point on a lamp.
     pub fn of(scene: &Scene, point: &LightPoint) -> Self {
         let light = scene.lamps().get(point.light);
+        if matches!(light, Light::Collimated(_)) {
+            return Self::Collimated;
+        }
         match (light.is_delta(), light.is_infinite()) {
             (true, _) => Self::Dirac,
             (false, true) => Self::Environment,
@@ -30,8 +36,12 @@ impl LampEnd {
     }
 }
 
-/// Classes remember this many surface vertices; longer paths keep the ends and what is needed to tell who reaches them.
-const REMEMBERED: u32 = 48;
+/// Classes remember so many vertices at either end, and of what lies between only what is needed to tell who reaches
+/// them, and their pattern.
+const REMEMBERED: u32 = 32;
+
+/// More runs of equal vertices than this are not told apart.
+const MOST_RUNS: u8 = 4;
 
 /// The class of a path: how each of its surface vertices scatters, from the lamp to the camera. S is a vertex that is
 /// passed by a Dirac lobe, D any other, at which walks can be joined.
@@ -40,10 +50,14 @@ pub struct PathClass {
     lamp: LampEnd,
     /// Surface vertices between the lamp and the camera.
     length: u32,
-    /// Bit i is set if vertex i, counted from the lamp, is a D. (Of long paths: of the first vertices.)
-    diffuse: u64,
-    /// Whether the vertex next to the camera is a D.
-    last: bool,
+    /// Bit i is set if vertex i, counted from the lamp, is a D.
+    head: u32,
+    /// Bit i is set if vertex i, counted from the camera, is a D.
+    tail: u32,
+    /// Runs of equal vertices, up to [`MOST_RUNS`].
+    runs: u8,
+    /// Bit i is set if run i has more than one vertex.
+    long_runs: u8,
     /// Whether two neighbours are both D.
     pair: bool,
 }
@@ -51,28 +65,32 @@ pub struct PathClass {
 impl PathClass {
     /// The class of a path whose vertices are D (true) or S, from the lamp on.
     pub fn new(lamp: LampEnd, vertices: impl IntoIterator<Item = bool>) -> Self {
-        let mut class = Self { lamp, length: 0, diffuse: 0, last: false, pair: false };
+        let mut class = Self { lamp, length: 0, head: 0, tail: 0, runs: 0, long_runs: 0, pair: false };
         for diffuse in vertices {
-            class.pair |= diffuse && class.last && class.length > 0;
-            if class.length < REMEMBERED {
-                class.diffuse |= u64::from(diffuse) << class.length;
-            }
-            class.last = diffuse;
-            class.length += 1;
+            class.push(diffuse);
         }
         class
+    }
+
+    /// Adds a vertex at the camera's end.
+    fn push(&mut self, diffuse: bool) {
+        if self.length > 0 && self.last() == diffuse {
+            self.long_runs |= 1 << (self.runs - 1);
+            self.pair |= diffuse;
+        } else {
+            self.runs = (self.runs + 1).min(MOST_RUNS);
+        }
+        if self.length < REMEMBERED {
+            self.head |= u32::from(diffuse) << self.length;
+        }
+        self.tail = self.tail << 1 | u32::from(diffuse);
+        self.length += 1;
     }
 
     /// The class of a contribution's path.
     pub fn of(scene: &Scene, c: &Contribution<'_>) -> Self {
         let lamp = LampEnd::of(scene, &c.path.lamp);
-        let mut eye = c.path.eye;
-        if c.strategy.s == 0 && lamp == LampEnd::Surface {
-            // The last one is the lamp.
-            eye = &eye[..eye.len() - 1];
-        }
-        let vertices = c.path.light.iter().chain(eye.iter().rev());
-        Self::new(lamp, vertices.map(|v| v.is_connectible()))
+        Self::new(lamp, surface_vertices(scene, c).map(Vertex::is_connectible))
     }
 
     /// What is at its lamp's end.
@@ -97,12 +115,12 @@ impl PathClass {
 
     /// Whether the vertex next to the lamp is a D.
     pub fn first(&self) -> bool {
-        self.length > 0 && self.diffuse & 1 != 0
+        self.head & 1 != 0
     }
 
     /// Whether the vertex next to the camera is a D.
     pub fn last(&self) -> bool {
-        self.last
+        self.tail & 1 != 0
     }
 
     /// Whether it holds two D in a row, which inner connections need.
@@ -112,7 +130,7 @@ impl PathClass {
 
     /// Whether it holds any D: light that is scattered, and not the mere image of a lamp.
     pub fn has_diffuse(&self) -> bool {
-        self.diffuse != 0 || self.last
+        self.runs > 1 || self.first()
     }
 
     /// Whether light is focused by S vertices and then falls on a D: a caustic.
@@ -120,9 +138,24 @@ impl PathClass {
         !self.first() && self.has_diffuse()
     }
 
-    /// Whether vertex `i` from the lamp is a D. (What is not remembered of long paths counts as S.)
-    fn is_diffuse(&self, i: u32) -> bool {
-        if i + 1 == self.length { self.last } else { i < REMEMBERED && self.diffuse >> i & 1 != 0 }
+    /// Whether vertex `i` from the lamp is a D; `None` if that is not remembered.
+    fn is_diffuse(&self, i: u32) -> Option<bool> {
+        let from_camera = self.length - 1 - i;
+        if i < REMEMBERED {
+            Some(self.head >> i & 1 != 0)
+        } else if from_camera < REMEMBERED {
+            Some(self.tail >> from_camera & 1 != 0)
+        } else {
+            None
+        }
+    }
+
+    /// Whether vertices `i` and `i + 1` from the lamp can be joined. Where that is not remembered: whether any two can.
+    fn is_pair(&self, i: u32) -> bool {
+        match (self.is_diffuse(i), self.is_diffuse(i + 1)) {
+            (Some(a), Some(b)) => a && b,
+            _ => self.pair,
+        }
     }
 
     /// Whether a strategy makes such paths: both vertices that it joins must be D, the lamp's end must be there to be
@@ -134,47 +167,61 @@ impl PathClass {
         }
         match (s, t) {
             (_, 1) if camera == Joins::Nothing => false,
-            (0, _) => self.lamp != LampEnd::Dirac,
+            (0, _) => !matches!(self.lamp, LampEnd::Dirac | LampEnd::Collimated),
             (1, 1) => match self.lamp {
                 LampEnd::Surface => true,
                 LampEnd::Environment => camera == Joins::All,
-                LampEnd::Dirac => false,
+                LampEnd::Dirac | LampEnd::Collimated => false,
             },
-            (1, _) => self.first(),
-            (_, 1) => self.last,
-            _ => self.is_diffuse(s - 2) && self.is_diffuse(s - 1),
+            (1, _) => self.first() && self.lamp != LampEnd::Collimated,
+            (_, 1) => self.last(),
+            _ => self.is_pair(s - 2),
         }
     }
 
     /// The class without the lengths of its chains: `LS+DE` for LSDE, LSSDE and so on.
     pub fn pattern(&self) -> String {
-        let mut runs: Vec<(bool, u32)> = Vec::new();
-        for i in 0..self.length.min(REMEMBERED) {
-            match runs.last_mut() {
-                Some((kind, count)) if *kind == self.is_diffuse(i) => *count += 1,
-                _ => runs.push((self.is_diffuse(i), 1)),
-            }
-        }
-        let text = |&(diffuse, count): &(bool, u32)| match (diffuse, count) {
-            (true, 1) => "D",
-            (true, _) => "DD+",
+        let text = |i: u8| match (self.first() == i.is_multiple_of(2), self.long_runs >> i & 1 != 0) {
+            (true, false) => "D",
+            (true, true) => "DD+",
             (false, _) => "S+",
         };
-        if runs.len() <= 3 {
-            return format!("L{}E", runs.iter().map(text).collect::<String>());
+        if self.runs < MOST_RUNS {
+            return format!("L{}E", (0..self.runs).map(text).collect::<String>());
         }
-        if !self.pair && !self.first() && !self.last {
+        if !self.pair && !self.first() && !self.last() {
             return "LS+DS+(DS+)+E".to_owned();
         }
         let end = |diffuse| if diffuse { "D" } else { "S+" };
-        format!("L{}(D|S)*{}E", end(self.first()), end(self.last))
+        format!("L{}(D|S)*{}E", end(self.first()), end(self.last()))
     }
 }
 
+/// The vertices of a contribution's path between the lamp and the camera, from the lamp on.
+pub(crate) fn surface_vertices<'c>(
+    scene: &Scene,
+    c: &Contribution<'c>,
+) -> impl Iterator<Item = &'c Vertex> + use<'c> {
+    let mut eye = c.path.eye;
+    if c.strategy.s == 0 && LampEnd::of(scene, &c.path.lamp) == LampEnd::Surface {
+        // The last one is the lamp.
+        eye = &eye[..eye.len() - 1];
+    }
+    c.path.light.iter().chain(eye.iter().rev())
+}
+
 impl fmt::Display for PathClass {
+    /// With an ellipsis for what is not remembered of long paths.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let vertices = (0..self.length).map(|i| if self.is_diffuse(i) { 'D' } else { 'S' });
-        write!(f, "L{}E", vertices.collect::<String>())
+        f.write_str("L")?;
+        for i in 0..self.length {
+            match self.is_diffuse(i) {
+                Some(diffuse) => f.write_str(if diffuse { "D" } else { "S" })?,
+                None if i == REMEMBERED => f.write_str("…")?,
+                None => {}
+            }
+        }
+        f.write_str("E")
     }
 }
 
@@ -216,6 +263,9 @@ mod tests {
         };
         assert_eq!(made(Surface, ""), [(0, 2), (1, 1)]);
         assert_eq!(made(Dirac, ""), []);
+        assert_eq!(made(Collimated, ""), []);
+        assert_eq!(made(Collimated, "D"), [(2, 1)]);
+        assert_eq!(made(Collimated, "DD"), [(2, 2), (3, 1)]);
         assert_eq!(made(Surface, "D"), [(0, 3), (1, 2), (2, 1)]);
         assert_eq!(made(Dirac, "SDS"), []);
         assert_eq!(made(Surface, "SDS"), [(0, 5)]);
@@ -229,10 +279,34 @@ mod tests {
     }
 
     #[test]
-    fn long_paths_keep_their_ends() {
+    fn long_paths_keep_both_ends() {
         let long = PathClass::new(LampEnd::Surface, (0..200).map(|i| i == 199));
         assert!(long.last() && !long.first() && long.is_caustic() && long.edges() == 201);
         assert!(long.is_made_by(Strategy { s: 201, t: 1 }, Joins::All));
         assert!(!long.is_made_by(Strategy { s: 201, t: 1 }, Joins::Nothing));
+        assert_eq!(long.pattern(), "LS+DE");
+        assert_eq!(long.to_string(), format!("L{}…{}DE", "S".repeat(32), "S".repeat(31)));
+        let class = |vertices: String| class(LampEnd::Dirac, &vertices);
+        let hidden = |middle: &str| class(format!("{0}{middle}S{0}", "SD".repeat(40)) + "S");
+        for (vertices, pattern) in [
+            ("D".repeat(300), "LDD+E"),
+            ("S".repeat(300), "LS+E"),
+            (format!("D{}", "S".repeat(300)), "LDS+E"),
+            (format!("{}SD", "D".repeat(300)), "LDD+S+DE"),
+            (format!("S{}S", "D".repeat(300)), "LS+DD+S+E"),
+            (format!("{}SSD", "DS".repeat(100)), "LD(D|S)*DE"),
+            (format!("S{}", "DS".repeat(100)), "LS+DS+(DS+)+E"),
+        ] {
+            assert_eq!(class(vertices.clone()).pattern(), pattern, "{vertices}");
+        }
+        assert_eq!(hidden("DD").pattern(), "LS+(D|S)*S+E");
+        // A pair of D in the middle can be joined, wherever it is.
+        let inner = |c: &PathClass| {
+            (2..c.len()).any(|s| c.is_made_by(Strategy { s, t: c.len() + 2 - s }, Joins::All))
+        };
+        assert!(inner(&hidden("DD")) && !inner(&hidden("")));
+        // Up to 64 vertices, all is remembered.
+        let text = format!("{}D{}", "S".repeat(40), "S".repeat(23));
+        assert_eq!(class(text.clone()).to_string(), format!("L{text}E"));
     }
 }

@@ -122,6 +122,8 @@ mod tests {
         assert_eq!(who(point, "DS"), ["bdpt, s=1&t>=2", "bdpt, t>=2", "path", "path_ems"]);
         assert_eq!(who(point, "SDDS"), ["bdpt, s>=2&t>=2", "bdpt, t>=2"]);
         assert!(who(point, "SDS").is_empty() && who(point, "").is_empty());
+        assert_eq!(who(LampEnd::Collimated, "D"), ["bdpt, t=1", "light"]);
+        assert!(who(LampEnd::Collimated, "DS").is_empty());
         assert_eq!(who(area, "").len(), 7);
     }
 

@@ -11,6 +11,7 @@ mod explain;
 mod grid;
 mod heat;
 mod jobs;
+mod memory;
 mod outcome;
 mod page;
 mod tally;

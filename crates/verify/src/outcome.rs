@@ -159,6 +159,7 @@ pub fn lamp_name(lamp: LampEnd) -> &'static str {
         LampEnd::Surface => "lamps with a surface",
         LampEnd::Environment => "the environment",
         LampEnd::Dirac => "lamps without extent",
+        LampEnd::Collimated => "lamps that shine along their normals",
     }
 }
 

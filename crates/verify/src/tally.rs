@@ -96,6 +96,11 @@ impl Powers {
         Self { moments: vec![[0.0; 3]; blocks * SIZES] }
     }
 
+    /// Bytes that a block takes.
+    pub fn memory_of_a_block() -> u64 {
+        (SIZES * size_of::<Moments>()) as u64
+    }
+
     /// Adds contributions that are `rarity` times as large and as rare as `value`.
     fn add(&mut self, block: usize, value: f64, rarity: f64) {
         let size = value.abs() * rarity;
@@ -148,8 +153,6 @@ fn add(a: &mut Moments, b: &Moments) {
 pub struct ClassTally {
     /// Sum of the luminances of contributions.
     pub light: f64,
-    /// Sum of their squares.
-    pub squares: f64,
     /// How many there were.
     pub count: u64,
 }
@@ -158,14 +161,12 @@ impl ClassTally {
     /// Adds a contribution.
     pub fn add(&mut self, luminance: f64) {
         self.light += luminance;
-        self.squares += luminance * luminance;
         self.count += 1;
     }
 
     /// Adds another tally.
     pub fn merge(&mut self, other: &Self) {
         self.light += other.light;
-        self.squares += other.squares;
         self.count += other.count;
     }
 }

@@ -2,6 +2,7 @@
 
 use caustica_math::stats::sidak;
 use caustica_math::stream::mix64;
+use caustica_math::{MemoryLimit, MemoryShortage};
 use caustica_render::{Control, RenderError, available_threads};
 use caustica_scene::Scene;
 use caustica_scene::camera::Joins;
@@ -11,6 +12,7 @@ use caustica_transport::{Kernel, Scratch, Settings, StrategySet};
 use crate::estimator::Estimator;
 use crate::grid::Grid;
 use crate::jobs;
+use crate::memory;
 use crate::outcome::{ClassShare, Finding, Outcome, Tested};
 use crate::tally::{Learned, Picture, PictureSink, Powers, Probe};
 use crate::trial::{Expected, Side, compare};
@@ -54,6 +56,20 @@ pub enum VerifyError {
     /// It was asked to stop.
     #[error("stopped before there was anything to compare")]
     Stopped,
+    /// The picture is too large for the machine.
+    #[error(
+        "to {doing} {width} × {height} pixels {shortage}: a smaller picture shows the same (`--resolution`)"
+    )]
+    Memory {
+        /// What was to be done.
+        doing: &'static str,
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+        /// How much is needed and there.
+        shortage: MemoryShortage,
+    },
 }
 
 /// The fewest samples per pixel.
@@ -94,7 +110,8 @@ type Values = Vec<Vec<f64>>;
 /// that it can reach. The outcome does not depend on the number of threads.
 ///
 /// # Errors
-/// Too few samples, threads that do not start, and a control that stops it.
+/// Too few samples, a picture that needs more memory than there is, threads that do not start, and a control that
+/// stops it.
 pub fn verify(
     scene: &Scene,
     options: &Options,
@@ -108,6 +125,8 @@ pub fn verify(
     let passes = options.samples.div_ceil(replicates);
     let run = Run { scene, grid: Grid::new(scene, options.block), replicates, passes, options, control };
     let estimators = Estimator::all(&options.settings);
+    memory::for_verifying(run.grid.window, (estimators.len(), run.grid.blocks()), options.threads)
+        .check(MemoryLimit::Machine)?;
     // The reference takes about three times as long as an estimator.
     let parts = estimators.len() as f64 + 3.0;
     let (learned, references) =

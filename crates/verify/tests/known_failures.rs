@@ -23,3 +23,28 @@ fn every_row_is_free_of_mismatches() {
         assert!(outcome.tested.iter().any(|t| t.tests() > 0), "{}", row.what);
     }
 }
+
+/// The table names a test for every row, and there is such a test.
+#[test]
+fn every_row_has_a_test_of_its_own() {
+    for row in rows() {
+        let (file, test) = row.test;
+        let path = format!("{}/../transport/tests/{file}.rs", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.contains(&format!("#[test]\nfn {test}()")), "{}: {path} has no {test}", row.what);
+    }
+}
+
+/// The published table has all rows with their tests.
+#[test]
+fn the_published_table_is_complete() {
+    let path = format!("{}/../../docs/results.md", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).unwrap();
+    for row in rows() {
+        let (file, test) = row.test;
+        let shared = if row.shared { "shared: " } else { "" };
+        let line = text.lines().find(|l| l.starts_with(&format!("| {} |", row.what)));
+        let line = line.unwrap_or_else(|| panic!("{} is not in docs/results.md", row.what));
+        assert!(line.ends_with(&format!("| 0 | {shared}`{file}::{test}` |")), "{line}");
+    }
+}

@@ -61,7 +61,7 @@ impl Nightly {
             Step::Seeds => seeds(self.seed.unwrap_or_else(clock)),
             Step::Fuzz => fuzz::fuzz(self.fuzz_minutes),
             Step::Mutants => mutants::mutants(self.mutants_shard.as_deref()),
-            Step::Faults => command::run(program(&["bash", "crates/transport/tests/plant_faults.sh"])),
+            Step::Faults => faults(),
             Step::Deny => {
                 CARGO_DENY.check()?;
                 command::run(program(&["cargo", "deny", "check"]))
@@ -103,6 +103,14 @@ fn line(step: Step, outcome: &Outcome, time: Duration) -> String {
         Err(Trouble::Failed(words)) => format!("FAILED: {words}"),
     };
     format!("{:<8} {:>6} s  {words}\n", name(step), time.as_secs())
+}
+
+/// Faults in a copy of the sources, which tests must find, and those of the feature `planted-fault`, which `verify` must.
+fn faults() -> Outcome {
+    let by_tests = command::run(program(&["bash", "crates/transport/tests/plant_faults.sh"]));
+    let test = ["--features", "planted-fault", "--test", "planted"];
+    let verify = [&["cargo", "test", "--package", "caustica-verify"], &test[..]].concat();
+    by_tests.and(command::run(program(&verify)))
 }
 
 /// The crates whose tests state a level of significance.

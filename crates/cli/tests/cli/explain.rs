@@ -16,7 +16,7 @@ fn under_a_point(bench: &Bench) {
 fn the_light_of_a_scene_is_explained() {
     let bench = Bench::new();
     let ran = bench.run(&["explain", "scene.xml", "--spp", "32"]).ok();
-    for words in ["24 × 16 pixels from 0,0", "LDE", "LS+DE", "found by strategies", "Most of bdpt's noise"] {
+    for words in ["24 × 16 pixels from 0,0", "LDE", "LS+DE", "found by strategies", "of bdpt's noise"] {
         assert!(ran.out.contains(words), "{words}: {}", ran.out);
     }
     assert!(bench.made().is_empty());
@@ -46,4 +46,28 @@ fn regions_must_lie_in_the_picture() {
     bench.run(&["explain", "scene.xml", "--region", "20,0,8,8"]).fails(2, &["beyond the picture of 24 × 16"]);
     bench.run(&["explain", "scene.xml", "--region", "20,0"]).fails(2, &["X,Y,WIDTH,HEIGHT"]);
     bench.run(&["explain", "scene.xml", "--integrator", "depth"]).fails(2, &["depth"]);
+}
+
+#[test]
+fn more_samples_than_asked_for_are_told() {
+    let bench = Bench::new();
+    let ran = bench.run(&["explain", "scene.xml", "--spp", "17"]).ok();
+    assert!(ran.err.contains("32 samples a pixel were taken instead of 17"), "{}", ran.err);
+    assert!(ran.out.contains("32 samples each"), "{}", ran.out);
+    assert!(!bench.run(&["explain", "scene.xml", "--spp", "16"]).ok().err.contains("instead"));
+    let ran = bench.run(&["verify", "scene.xml", "--spp", "33", "--max-depth", "3", "-o", "out"]).ok();
+    assert!(ran.err.contains("64 samples a pixel were taken instead of 33"), "{}", ran.err);
+}
+
+/// As for `render`: the figure, before anything is rendered.
+#[test]
+fn pictures_that_do_not_fit_are_refused() {
+    let bench = Bench::new();
+    for command in ["verify", "explain"] {
+        let start = std::time::Instant::now();
+        let args = [command, "scene.xml", "--resolution", "16000x16000", "--spp", "8", "--threads", "500"];
+        let ran = bench.run(&args);
+        ran.fails(5, &[&format!("to {command} 16000 × 16000 pixels needs"), "MB of memory", "--resolution"]);
+        assert!(start.elapsed().as_secs() < 60, "{command}");
+    }
 }

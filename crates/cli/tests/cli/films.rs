@@ -244,3 +244,31 @@ fn a_full_disk_costs_no_film() {
     let resumed = render(&bench, &["--spp", "5", "--checkpoint", "c.film", "--resume", "-o", "p"]).ok();
     assert!(resumed.out.starts_with("bdpt: 5 samples"), "{}", resumed.out);
 }
+
+/// Hours of work are not replaced by mistake; what the same command makes again is.
+#[test]
+fn films_are_not_replaced_if_samples_are_lost() {
+    let bench = Bench::new();
+    let film = |args: &[&str]| render(&bench, &[args, &["-o", "a.film"]].concat());
+    film(&["--samples", "2..6"]).ok();
+    film(&["--samples", "2..6"]).ok();
+    let before = bench.bytes("a.film");
+    film(&["--spp", "4"]).fails(4, &["`a.film` is there and holds the samples 2..6", "`--force`"]);
+    film(&["--samples", "2..6", "--seed", "3"]).fails(4, &["they differ in the seed (0 and 3)"]);
+    film(&["--samples", "2..6", "--resolution", "20x16"]).fails(4, &["of 24 × 16 pixels", "20 × 16"]);
+    bench.write_changed("20, 18, 15", "20, 18, 16");
+    film(&["--samples", "2..6"]).fails(4, &["they differ in what `scene.xml` holds"]);
+    assert_eq!(bench.bytes("a.film"), before);
+    film(&["--samples", "2..6", "--force"]).ok();
+    assert_ne!(bench.bytes("a.film"), before);
+    // More samples of the same are welcome.
+    film(&["--samples", "1..7"]).ok();
+    render(&bench, &["--samples", "9..10", "-o", "b.film"]).ok();
+    bench.run(&["merge", "b.film", "-o", "a.film"]).fails(4, &["holds the samples 1..7", "`--force`"]);
+    bench.run(&["merge", "a.film", "b.film", "-o", "a.film"]).ok();
+    bench.write("c.film", "hours of writing");
+    render(&bench, &["--spp", "1", "-o", "c.film"])
+        .fails(4, &["`c.film` is there and is no film", "`--force`"]);
+    bench.run(&["merge", "b.film", "-o", "c.film"]).fails(4, &["is no film"]);
+    bench.run(&["merge", "b.film", "-o", "c.film", "--force"]).ok();
+}

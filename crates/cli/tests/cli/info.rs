@@ -46,6 +46,23 @@ fn the_same_figures_in_json() {
 }
 
 #[test]
+fn instances_are_counted() {
+    let bench = Bench::new();
+    let instance = "<shape type='instance'><ref id='g'/></shape>";
+    let scene = format!(
+        "<scene version='3.0.0'><sensor type='perspective'/><emitter type='constant'/>\
+         <shape type='shapegroup' id='g'><shape type='cube'/><shape type='sphere'/></shape>{}</scene>",
+        instance.repeat(3)
+    );
+    bench.write("i.xml", scene);
+    let out = bench.run(&["info", "i.xml"]).ok().out;
+    assert!(out.contains("shapes      2 (12 triangles, 1 sphere)\n"), "{out}");
+    assert!(out.contains("instances   3 instances of 1 group: 36 triangles are seen\n"), "{out}");
+    let info = bench.run(&["info", "i.xml", "--json"]).ok().json();
+    assert_eq!([&info["groups"], &info["instances"], &info["placed_triangles"]], [1, 3, 36]);
+}
+
+#[test]
 fn the_built_in_scene_has_figures_too() {
     let bench = Bench::new();
     let info = bench.run(&["info", "--json"]).ok().json();

@@ -248,3 +248,51 @@ fn sums_beyond_64_bits_stay_at_the_largest_number() {
     let picture = film.develop();
     assert!(picture.eye.iter().chain(&picture.light).all(|p| p.is_valid()));
 }
+
+/// With negative contributions (of a filter such as Mitchell's), sums can go beyond 64 bits and come back: in any order,
+/// grouping and through files they are the same.
+#[test]
+fn sums_beyond_64_bits_depend_on_no_order() {
+    let filter = PixelFilter::new(&Filter::Box { radius: 0.5 });
+    let (huge, small) = (Rgb::splat(1e30), Rgb::splat(3.0));
+    // In turn: up, up, …, down, down, … and both mixed; the last few decide.
+    let up = [huge; 21];
+    let down = [huge * -1.0; 18];
+    let mixed = up.iter().zip(&down).flat_map(|(a, b)| [*a, *b]).chain([huge, huge, huge]);
+    let orders: [Vec<Rgb>; 3] =
+        [[&up[..], &down[..]].concat(), [&down[..], &up[..]].concat(), mixed.collect()];
+    let films = orders.map(|order| {
+        let film = Film::new(whole()).unwrap();
+        let mut buffer = film.light_buffer().unwrap();
+        for value in order.into_iter().chain([small]) {
+            film.add_eye([3, 4], value);
+            film.splat_light(&filter, Vec2::new(5.5, 6.5), value);
+            film.splat_into(&mut buffer, &filter, Vec2::new(7.5, 8.5), value);
+        }
+        film.flush(&mut buffer);
+        film
+    });
+    let parts = || {
+        let (a, b) = (Film::new(whole()).unwrap(), Film::new(whole()).unwrap());
+        for (film, values) in [(&a, &up[..]), (&b, &down[..]), (&b, &[small][..])] {
+            for value in values {
+                film.add_eye([3, 4], *value);
+                film.splat_light(&filter, Vec2::new(5.5, 6.5), *value);
+                film.splat_light(&filter, Vec2::new(7.5, 8.5), *value);
+            }
+        }
+        (a, b)
+    };
+    let ((ab, b), (a, ba)) = (parts(), parts());
+    assert!(ab.sums().flatten().filter(|s| *s == i64::MAX).count() == 9);
+    assert!(b.sums().flatten().filter(|s| *s == i64::MIN).count() == 9);
+    ab.merge(&b).unwrap();
+    ba.merge(&a).unwrap();
+    for film in films[1..].iter().chain([&ab, &ba]) {
+        assert!(films[0].sums().eq(film.sums()));
+        assert!(films[0].bits_equal(film) && films[0].fingerprint() == film.fingerprint());
+    }
+    // Three times the largest contribution, and a little.
+    let three = films[0].sums().flatten().find(|s| *s != 0).unwrap();
+    assert!(three > 3 << 61 && three < (3 << 61) + (1 << 60), "{three}");
+}

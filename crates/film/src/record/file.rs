@@ -4,7 +4,8 @@
 //! sums of one half and those of the other in chunks of 65 536 pixels (the last one shorter), and at last the BLAKE3
 //! hash of all before it. A chunk is its length in eight bytes and that many bytes of raw deflate, which hold the sums
 //! of six channels one after the other as 64-bit integers: of each channel the lowest bytes of all pixels first, row by
-//! row, then the next ones. All numbers are little-endian.
+//! row, then the next ones. Of sums beyond 64 bits, if the header counts any, the number of the sum in its half and how
+//! often it went round follow the sums, in sixteen bytes each. All numbers are little-endian.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, BufWriter, Read, Write};
@@ -19,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{FilmFacts, FilmRecord, MOST_SAMPLES, Provenance};
 use crate::dual::{DualFilm, passes_by_half};
-use crate::film::{Film, FilmCounts};
+use crate::film::{CHANNELS, Film, FilmCounts};
 use crate::layout::FilmLayout;
 use crate::{FilmError, output};
 
@@ -36,9 +37,6 @@ const SAMPLE_NUMBERS: u64 = 1 << 32;
 /// Longer times of rendering are nonsense.
 const LONGEST_TIME: f64 = 1e12;
 
-/// Layers and channels of a half.
-const CHANNELS: usize = 6;
-
 /// Pixels of a chunk.
 const CHUNK: usize = 1 << 16;
 
@@ -53,8 +51,15 @@ struct Header {
     #[serde(flatten)]
     layout: FilmLayout,
     counts: [FilmCounts; 2],
+    /// How many sums of each half are beyond 64 bits.
+    #[serde(default, skip_serializing_if = "are_zero")]
+    beyond: [u64; 2],
     #[serde(flatten)]
     facts: FilmFacts,
+}
+
+fn are_zero(counts: &[u64; 2]) -> bool {
+    *counts == [0, 0]
 }
 
 /// Writes a film, under a temporary name first: a file of that name is replaced whole or not at all. The same film and
@@ -71,7 +76,9 @@ pub fn write_film(path: &Path, film: &DualFilm, facts: &FilmFacts) -> Result<(),
 
 fn put<W: Write>(film: &DualFilm, facts: &FilmFacts, to: &mut Hashed<W>) -> io::Result<()> {
     let counts = film.halves().each_ref().map(Film::counts);
-    let header = Header { layout: *film.layout(), counts, facts: facts.clone() };
+    let turns = film.halves().each_ref().map(|half| half.turns().all());
+    let beyond = turns.each_ref().map(|t| t.len() as u64);
+    let header = Header { layout: *film.layout(), counts, beyond, facts: facts.clone() };
     to.write_all(MAGIC)?;
     to.write_all(VERSION)?;
     to.write_all(serde_json::to_string(&header)?.as_bytes())?;
@@ -85,6 +92,10 @@ fn put<W: Write>(film: &DualFilm, facts: &FilmFacts, to: &mut Hashed<W>) -> io::
             to.write_all(&(chunk.len() as u64).to_le_bytes())?;
             to.write_all(&chunk)?;
         }
+    }
+    for (number, turns) in turns.into_iter().flatten() {
+        to.write_all(&number.to_le_bytes())?;
+        to.write_all(&turns.to_le_bytes())?;
     }
     let hash = to.hasher.finalize();
     to.to.write_all(hash.as_bytes())?;
@@ -119,14 +130,18 @@ impl FilmRecord {
         let io = |e| FilmError::io(path, e);
         let file = File::open(path).map_err(io)?;
         let length = file.metadata().map_err(io)?.len();
-        Self::read_from(BufReader::new(file), length).map_err(|e| match e {
-            Bad::Io(e) if e.kind() == io::ErrorKind::UnexpectedEof => FilmError::format(path, DAMAGED),
-            Bad::Io(e) => io(e),
-            Bad::Film(FilmError::Layout(message) | FilmError::Merge(message)) => {
-                FilmError::format(path, message)
-            }
-            Bad::Film(other) => other,
-        })
+        Self::read_from(BufReader::new(file), length).map_err(|e| e.of_file(path))
+    }
+
+    /// Reads what a film file says of itself, and none of its sums.
+    ///
+    /// # Errors
+    /// What the system says, files that are no films, and those of a later version.
+    pub fn read_facts(path: &Path) -> Result<(FilmLayout, FilmFacts), FilmError> {
+        let file = File::open(path).map_err(|e| FilmError::io(path, e))?;
+        let mut from = Hashed { to: BufReader::new(file), hasher: blake3::Hasher::new() };
+        let header = header(&mut from).map_err(|e| e.of_file(path))?;
+        Ok((header.layout, header.facts))
     }
 
     /// Reads a film from the bytes of a file.
@@ -157,6 +172,9 @@ impl FilmRecord {
             }
             half.add_counts(counts);
         }
+        for (half, count) in film.halves_mut().iter_mut().zip(header.beyond) {
+            half.turns_mut().restore(turns_of(&mut from, count)?, (pixels * CHANNELS) as u64)?;
+        }
         let expected = from.hasher.finalize();
         let mut hash = Vec::new();
         from.to.take(expected.as_bytes().len() as u64 + 1).read_to_end(&mut hash)?;
@@ -177,6 +195,19 @@ fn bad(message: &str) -> FilmError {
 enum Bad {
     Io(io::Error),
     Film(FilmError),
+}
+
+impl Bad {
+    fn of_file(self, path: &Path) -> FilmError {
+        match self {
+            Self::Io(e) if e.kind() == io::ErrorKind::UnexpectedEof => FilmError::format(path, DAMAGED),
+            Self::Io(e) => FilmError::io(path, e),
+            Self::Film(FilmError::Layout(message) | FilmError::Merge(message)) => {
+                FilmError::format(path, message)
+            }
+            Self::Film(other) => other,
+        }
+    }
 }
 
 impl From<io::Error> for Bad {
@@ -313,6 +344,18 @@ fn chunk_of(
     let sum =
         move |i: usize, c: usize| i64::from_le_bytes(std::array::from_fn(|k| bytes[(8 * c + k) * count + i]));
     Ok((0..count).map(move |i| std::array::from_fn(|c| sum(i, c))))
+}
+
+/// The next so many sums beyond 64 bits.
+fn turns_of(from: &mut impl Read, count: u64) -> Result<Vec<(u64, i64)>, Bad> {
+    let mut turns = Vec::new();
+    for _ in 0..count {
+        let (mut number, mut of) = ([0; 8], [0; 8]);
+        from.read_exact(&mut number)?;
+        from.read_exact(&mut of)?;
+        turns.push((u64::from_le_bytes(number), i64::from_le_bytes(of)));
+    }
+    Ok(turns)
 }
 
 /// Exactly so many bytes; `None` if the compressed ones hold anything else.

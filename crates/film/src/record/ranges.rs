@@ -40,6 +40,12 @@ impl SampleRanges {
         common.filter(|r| !r.is_empty()).min_by_key(|r| r.start)
     }
 
+    /// Whether all of the other samples are among these.
+    pub fn contains(&self, other: &Self) -> bool {
+        let holds = |r: &Range<u64>| self.0.iter().any(|own| own.start <= r.start && r.end <= own.end);
+        other.0.iter().all(holds)
+    }
+
     /// Those of both.
     ///
     /// # Errors

@@ -215,3 +215,33 @@ fn announcements_are_not_believed() {
     let small = with_header(&bytes, |h| h.replacen("\"width\":17", "\"width\":1", 1));
     assert!(FilmRecord::parse(&small).unwrap_err().to_string().contains("damaged"));
 }
+
+/// Sums beyond 64 bits, up and down, are kept exactly.
+#[test]
+fn sums_beyond_64_bits_survive_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.film");
+    let bright = record(0..3);
+    for _ in 0..13 {
+        bright.film.half(0).add_eye([10, 8], Rgb::splat(1e30));
+        bright.film.half(1).add_eye([11, 8], Rgb::splat(-1e30));
+    }
+    bright.write(&path).unwrap();
+    let read = FilmRecord::read(&path).unwrap();
+    assert!(read.film.bits_equal(&bright.film));
+    let count =
+        |half: usize, end: i64| read.film.halves()[half].sums().flatten().filter(|s| *s == end).count();
+    assert_eq!((count(0, i64::MAX), count(1, i64::MIN)), (3, 3));
+    // What cannot be is refused.
+    let bytes = fs::read(&path).unwrap();
+    let at = bytes.len() - 32 - 6 * 16;
+    for (offset, value) in [(0, u64::MAX), (8, 0), (8, 1 << 40), (16, 0)] {
+        let mut changed = bytes[..bytes.len() - 32].to_vec();
+        changed[at + offset..at + offset + 8].copy_from_slice(&value.to_le_bytes());
+        let told = FilmRecord::parse(&sealed(changed)).err().map(|e| e.to_string());
+        assert!(told.as_ref().is_some_and(|t| t.contains("largest sums make no sense")), "{told:?}");
+    }
+    // An ordinary film is written as before.
+    record(0..3).write(&path).unwrap();
+    assert!(!String::from_utf8_lossy(&fs::read(&path).unwrap()).contains("beyond"));
+}

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use caustica_math::Rgb;
-use caustica_scene::description::{ImageId, Material, MaterialId, MaterialKind, Mesh};
+use caustica_scene::description::{GroupId, ImageId, Material, MaterialId, MaterialKind, Mesh};
 use caustica_scene::memory::shortage;
 use caustica_scene::{Description, Diagnostic, Origin};
 
 use super::paths::Paths;
-use super::tree::Tree;
+use super::tree::{Tree, Value};
 use crate::files::{Limits, take};
 use crate::image::Codes;
-use crate::{image, obj, ply};
+use crate::{image, obj, ply, serialized};
 
 /// The most warnings that are kept: more of them help nobody.
 const MOST_WARNINGS: usize = 1000;
@@ -31,10 +31,15 @@ pub(super) struct Context<'c> {
     pub(super) hides_lamps: bool,
     /// Sensors in shapes: the place of each in the tree, and of its shape in the description.
     pub(super) meters: Vec<(usize, u32)>,
-    meshes: BTreeMap<PathBuf, Mesh>,
+    /// Those that are named again.
+    meshes: BTreeMap<(PathBuf, Format), Mesh>,
+    /// How often each file name stands in the scene.
+    named: BTreeMap<&'c str, u32>,
     images: BTreeMap<(PathBuf, Codes), ImageId>,
     /// The materials of objects of the tree.
     pub(super) materials: BTreeMap<usize, MaterialId>,
+    /// The groups of objects of the tree, if they have shapes.
+    pub(super) groups: BTreeMap<usize, Option<GroupId>>,
     /// Of shapes that are no lamps, and of lamps.
     default_materials: [Option<MaterialId>; 2],
     /// What may still come.
@@ -54,8 +59,10 @@ impl<'c> Context<'c> {
             hides_lamps: false,
             meters: Vec::new(),
             meshes: BTreeMap::new(),
+            named: file_names(tree),
             images: BTreeMap::new(),
             materials: BTreeMap::new(),
+            groups: BTreeMap::new(),
             default_materials: [None; 2],
             left,
         }
@@ -89,7 +96,7 @@ impl<'c> Context<'c> {
             None => self.path("mesh", file, origin)?,
         };
         let placed = |e: Diagnostic| if e.origin.is_some() { e } else { e.at(Some(origin.clone())) };
-        let mesh = if let Some(mesh) = self.meshes.get(&path) {
+        let mesh = if let Some(mesh) = self.meshes.get(&(path.clone(), format)) {
             let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs);
             let bytes = (bytes + size_of_val(&*mesh.triangles)) as u64;
             let error = |e| placed(shortage(&format!("another copy of the mesh `{file}`"), e));
@@ -98,7 +105,9 @@ impl<'c> Context<'c> {
         } else {
             let (mesh, warnings) = self.read_mesh(file, &path, format).map_err(placed)?;
             warnings.into_iter().for_each(|w| self.push(w));
-            self.meshes.insert(path, mesh.clone());
+            if self.named.get(file).is_some_and(|times| *times > 1) {
+                self.meshes.insert((path, format), mesh.clone());
+            }
             mesh
         };
         let most = Limits::of(self.paths.folder.trust).triangles;
@@ -118,6 +127,9 @@ impl<'c> Context<'c> {
             (Some(text), _) => obj::read_obj(text.as_bytes(), file).map(|read| (read.mesh, read.warnings)),
             (None, Format::Obj) => obj::load_obj_within(path, memory).map(|read| (read.mesh, read.warnings)),
             (None, Format::Ply) => ply::load(path, memory).map(|read| (read.mesh, read.warnings)),
+            (None, Format::Serialized(index)) => {
+                serialized::load(path, index, memory).map(|mesh| (mesh, Vec::new()))
+            }
         }
     }
 
@@ -163,9 +175,23 @@ impl<'c> Context<'c> {
     }
 }
 
+/// How often each file name stands in the scene: what is named once need not be kept to be copied. (Shapes may be read
+/// more often, where a group or a scene refers to them again; they are read from the file again then.)
+fn file_names(tree: &Tree) -> BTreeMap<&str, u32> {
+    let mut names = BTreeMap::new();
+    for property in tree.objects.iter().flat_map(|o| &o.properties) {
+        if let ("filename", Value::String(name)) = (property.name.as_str(), &property.value) {
+            *names.entry(name.as_str()).or_insert(0) += 1;
+        }
+    }
+    names
+}
+
 /// Formats of mesh files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Format {
     Obj,
     Ply,
+    /// With the number of the mesh in the file.
+    Serialized(u32),
 }

@@ -12,6 +12,7 @@ mod emitter;
 mod fields;
 mod file;
 mod film;
+mod instance;
 mod integrator;
 mod ior;
 mod parse;

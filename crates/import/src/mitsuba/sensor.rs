@@ -173,7 +173,7 @@ fn lens(fields: &mut Fields<'_>, thin: bool, aspect: f32) -> Result<CameraKind, 
 
 /// The horizontal field of view in degrees. A focal length is that of a film of 36 mm × 24 mm and tells the angle of
 /// the diagonal.
-fn field_of_view(fields: &mut Fields, aspect: f32) -> Result<f32, Diagnostic> {
+pub(super) fn field_of_view(fields: &mut Fields, aspect: f32) -> Result<f32, Diagnostic> {
     let given = fields.float_if_any("fov", Bounds::Between(0.0, 180.0))?;
     let axes = &["x", "y", "diagonal", "smaller", "larger"];
     let axis = fields.choice("fov_axis", axes)?.map_or("x", |(axis, _)| axis);

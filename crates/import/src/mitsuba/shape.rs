@@ -9,14 +9,22 @@ use caustica_scene::description::{Geometry, MaterialId, Mesh, Shape};
 use super::class::Class;
 use super::context::{Context, Format};
 use super::fields::Fields;
-use super::{bsdf, emitter, solids};
+use super::{bsdf, emitter, instance, solids};
 use crate::nori::range::Bounds;
 
-const SHAPES: &[&str] = &["obj", "ply", "sphere", "rectangle", "disk", "cube", "cylinder"];
-const UNSUPPORTED: &[&str] = &[
+const SHAPES: &[&str] = &[
+    "obj",
+    "ply",
     "serialized",
+    "sphere",
+    "rectangle",
+    "disk",
+    "cube",
+    "cylinder",
     "shapegroup",
     "instance",
+];
+const UNSUPPORTED: &[&str] = &[
     "linearcurve",
     "bsplinecurve",
     "sdfgrid",
@@ -32,21 +40,36 @@ struct Surface {
     geometry: Geometry,
     name: String,
     placed: Transform,
+    /// Whether it is to be turned inside out.
+    flipped: bool,
 }
 
 pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
-    let mut fields = Fields::new(cx.tree, index);
+    let fields = Fields::new(cx.tree, index);
+    match fields.plugin() {
+        "shapegroup" => instance::group(index, cx).map(|_| ()),
+        "instance" => instance::read(fields, cx),
+        _ => {
+            let shape = read_surface(fields, cx)?;
+            cx.description.shapes.extend(shape);
+            Ok(())
+        }
+    }
+}
+
+/// A shape that is a surface by itself; nothing if it is not supported.
+pub(super) fn read_surface(mut fields: Fields, cx: &mut Context) -> Result<Option<Shape>, Diagnostic> {
     let plugin = fields.plugin();
     if UNSUPPORTED.contains(&plugin) {
         fields.warn(format!("the {} is not supported yet; it is left out", fields.title()));
         fields.finish_unread(cx);
-        return Ok(());
+        return Ok(None);
     }
     let to_world = fields.transform("to_world")?;
     let flipped = fields.boolean("flip_normals", false)? ^ fields.boolean("flip_normal", false)?;
     let mut surface = surface(&mut fields, (to_world, flipped), cx)?;
     if let Geometry::Mesh(mesh) = &mut surface.geometry
-        && flipped
+        && surface.flipped
     {
         flip(mesh);
     }
@@ -68,8 +91,7 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     let origin = Some(fields.object.origin.clone());
     fields.finish(cx);
     let (geometry, to_world) = (surface.geometry, surface.placed.then(to_world));
-    cx.description.shapes.push(Shape { name, geometry, to_world, material, emission, origin });
-    Ok(())
+    Ok(Some(Shape { name, geometry, to_world, material, emission, origin }))
 }
 
 /// The shape's material: the last one, as several are allowed where an included part has one of its own.
@@ -85,34 +107,36 @@ fn surface(
     (to_world, flipped): (Transform, bool),
     cx: &mut Context,
 ) -> Result<Surface, Diagnostic> {
-    let mesh =
-        |mesh, name: &str, placed| Surface { geometry: Geometry::Mesh(mesh), name: name.into(), placed };
-    let here = Transform::IDENTITY;
+    let mesh = |mesh, name: &str| Surface {
+        geometry: Geometry::Mesh(mesh),
+        name: name.into(),
+        placed: Transform::IDENTITY,
+        flipped,
+    };
     Ok(match fields.plugin() {
-        "obj" => file(fields, Format::Obj, &to_world, cx)?,
-        "ply" => file(fields, Format::Ply, &to_world, cx)?,
-        "rectangle" => mesh(solids::rectangle(), "rectangle", here),
-        "cube" => mesh(solids::cube(), "cube", here),
-        "disk" => {
-            fields.warn(approximated("disk", solids::SEGMENTS));
-            mesh(solids::disk(), "disk", here)
+        "obj" => file(fields, Format::Obj, (&to_world, flipped), cx)?,
+        "ply" => file(fields, Format::Ply, (&to_world, flipped), cx)?,
+        "serialized" => {
+            let index = fields.integer("shape_index", 0..=u32::MAX.into())?.unwrap_or(0) as u32;
+            file(fields, Format::Serialized(index), (&to_world, flipped), cx)?
         }
+        // The normal is that of the transformed sides.
+        "rectangle" => {
+            Surface { flipped: flipped ^ to_world.mirrors(), ..mesh(solids::rectangle(), "rectangle") }
+        }
+        "cube" => mesh(solids::cube(), "cube"),
+        "disk" => mesh(solids::disk(), "disk"),
         "cylinder" => {
-            fields.warn(approximated("cylinder", 2 * solids::SEGMENTS));
             let p0 = fields.point("p0")?.unwrap_or_default();
             let p1 = fields.point("p1")?.unwrap_or([0.0, 0.0, 1.0]);
             let radius = fields.float("radius", 1.0, Bounds::Positive)?;
             let placed = solids::along(p0, p1, radius)
                 .ok_or_else(|| fields.error("`p0` and `p1` of the cylinder are the same"))?;
-            mesh(solids::cylinder(), "cylinder", placed)
+            Surface { placed, ..mesh(solids::cylinder(), "cylinder") }
         }
         "sphere" => sphere(fields, (to_world, flipped))?,
         _ => return Err(fields.unknown_plugin(SHAPES)),
     })
-}
-
-fn approximated(what: &str, triangles: u32) -> String {
-    format!("the {what} is shown as a mesh of {triangles} triangles")
 }
 
 fn sphere(fields: &mut Fields, (to_world, flipped): (Transform, bool)) -> Result<Surface, Diagnostic> {
@@ -120,38 +144,45 @@ fn sphere(fields: &mut Fields, (to_world, flipped): (Transform, bool)) -> Result
     let radius = fields.float("radius", 1.0, Bounds::Positive)?;
     let placed = Transform::scale([f64::from(radius); 3]).then(Transform::translate(center));
     let name = "sphere".to_owned();
+    // A mirrored sphere is inside out.
+    let flipped = flipped ^ to_world.mirrors();
     if flipped || to_world.uniform_scale().is_none() {
-        let mesh = solids::sphere();
-        fields.warn(approximated("sphere", mesh.triangles.len() as u32));
-        return Ok(Surface { geometry: Geometry::Mesh(mesh), name, placed });
+        return Ok(Surface { geometry: Geometry::Mesh(solids::sphere()), name, placed, flipped });
     }
     // Mitsuba's u begins at +x, ours at −x.
     let placed = Transform::rotate(180.0, [0.0, 0.0, 1.0]).then(placed);
-    Ok(Surface { geometry: Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 }, name, placed })
+    let geometry = Geometry::Sphere { center: Vec3::ZERO, radius: 1.0 };
+    Ok(Surface { geometry, name, placed, flipped })
 }
 
 fn file(
     fields: &mut Fields,
     format: Format,
-    to_world: &Transform,
+    (to_world, flipped): (&Transform, bool),
     cx: &mut Context,
 ) -> Result<Surface, Diagnostic> {
     let (file, property) = fields.file_name()?;
     let mut mesh = cx.mesh(file, format, &property.value_origin)?;
     // With its usual value, v = 0 is an image's lower edge: as here.
-    let upright = fields.boolean("flip_tex_coords", format == Format::Obj)?;
+    let upright = match format {
+        Format::Serialized(_) => false,
+        _ => fields.boolean("flip_tex_coords", format == Format::Obj)?,
+    };
     if !upright {
         mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     }
-    if fields.boolean("face_normals", false)? {
+    let flat = fields.boolean("face_normals", false)?;
+    // Normals of its own keep a mirrored mesh's outside outside; by the winding it is inside out.
+    let flipped = flipped ^ (to_world.mirrors() && (flat || mesh.normals.is_empty()));
+    if flat {
         mesh.normals.clear();
     } else if mesh.normals.is_empty() {
         mesh.normals = solids::smooth_normals(&mesh, to_world);
     }
-    fields.ignore(&["vertex_normals", "shape_index"]);
+    fields.ignore(&["vertex_normals"]);
     fields.unsupported(&["collapse", "max_smooth_angle"]);
     let name = Path::new(file).file_name().map_or(file.into(), |n| n.to_string_lossy()).into_owned();
-    Ok(Surface { geometry: Geometry::Mesh(mesh), name, placed: Transform::IDENTITY })
+    Ok(Surface { geometry: Geometry::Mesh(mesh), name, placed: Transform::IDENTITY, flipped })
 }
 
 /// Turns a mesh inside out.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use caustica_math::elementary::atan2;
 use caustica_math::{Transform, Vec2, Vec3};
 use caustica_scene::description::Mesh;
 
@@ -69,14 +70,14 @@ pub(super) fn cube() -> Mesh {
     b.0
 }
 
-/// Of radius 1 around the z axis, facing +z; u is the radius and v the angle.
+/// Of radius 1 around the z axis, facing +z; u is the radius and v the angle. Its area is 10⁻⁴ less than a circle's.
 pub(super) fn disk() -> Mesh {
     let mut b = Builder::default();
     let normal = [0.0, 0.0, 1.0];
     for i in 0..SEGMENTS {
         let part = |i: u32| f64::from(i) / f64::from(SEGMENTS);
         let ((s0, c0), (s1, c1)) = (turn(i), turn(i + 1));
-        let middle = b.corner([0.0; 3], normal, [0.0, part(i)]);
+        let middle = b.corner([0.0; 3], normal, [0.0, 0.5 * (part(i) + part(i + 1))]);
         let from = b.corner([c0, s0, 0.0], normal, [1.0, part(i)]);
         let to = b.corner([c1, s1, 0.0], normal, [1.0, part(i + 1)]);
         b.0.triangles.push([middle, from, to]);
@@ -136,25 +137,33 @@ pub(super) fn along(p0: [f32; 3], p1: [f32; 3], radius: f32) -> Option<Transform
     if !(length > 0.0 && length.is_finite()) {
         return None;
     }
-    let least = (0..3).min_by(|a, b| axis[*a].abs().total_cmp(&axis[*b].abs())).unwrap_or(0);
-    let up = [0, 1, 2].map(|i| f64::from(i == least));
+    let [x, y, z] = axis.map(|a| a / length);
+    // Where u begins: Mitsuba has the frame of Duff et al. (Building an orthonormal basis, revisited, 2017).
+    let sign = 1.0_f64.copysign(z);
+    let a = -1.0 / (sign + z);
+    let (s, t) = ([1.0 + sign * x * x * a, sign * x * y * a, -sign * x], [x * y * a, sign + y * y * a, -y]);
+    let row = |i: usize| [s[i], t[i], [x, y, z][i], p0[i]];
+    let turned = Transform::from_rows([row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]]);
     let radius = f64::from(radius);
-    Some(Transform::scale([radius, radius, length]).then(Transform::look_at(p0, p1, up)))
+    Some(Transform::scale([radius, radius, length]).then(turned))
 }
 
 /// Normals of a mesh that has none: at each corner the mean of those of its triangles, weighed by their angles there
 /// (G. Thürmer and C. A. Wüthrich, Computing vertex normals from polygonal facets, 1998), in the world.
 pub(super) fn smooth_normals(mesh: &Mesh, to_world: &Transform) -> Vec<Vec3> {
     let mut sums = vec![[0.0_f64; 3]; mesh.positions.len()];
-    let world = |i: u32| to_world.point(mesh.positions[i as usize]);
+    let places: Vec<Vec3> = mesh.positions.iter().map(|p| to_world.point(*p)).collect();
     // A mirroring transform keeps outside outside.
     let side = if to_world.mirrors() { -1.0 } else { 1.0 };
     for triangle in &mesh.triangles {
-        let p = triangle.map(world);
-        let Some(normal) = (p[1] - p[0]).cross(p[2] - p[0]).try_normalized() else { continue };
+        let p = triangle.map(|i| places[i as usize]);
+        let across = (p[1] - p[0]).cross(p[2] - p[0]);
+        let Some(normal) = across.try_normalized() else { continue };
+        // The product of any two sides has that length.
+        let twice_the_area = across.length();
         for i in 0..3 {
             let (a, b) = (p[(i + 1) % 3] - p[i], p[(i + 2) % 3] - p[i]);
-            let angle = libm::atan2(f64::from(a.cross(b).length()), f64::from(a.dot(b)));
+            let angle = f64::from(atan2(twice_the_area, a.dot(b)));
             let sum = &mut sums[triangle[i] as usize];
             *sum = [
                 sum[0] + angle * side * f64::from(normal.x),

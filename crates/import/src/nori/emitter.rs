@@ -70,7 +70,7 @@ pub(super) fn read_light(object: &Object, cx: &mut Context) -> Result<(), Diagno
             let image = cx.image(file, &property.value_range)?;
             let to_world = fields.transform(&["toWorld"])?;
             let scale = fields.float(&["scale", "strength"], 1.0, Bounds::NotNegative)?;
-            LightKind::Environment { image, to_world, scale }
+            LightKind::Environment { image, to_world, scale, rows: Default::default() }
         }
         "area" => {
             let error = fields.error("the emitter `area` cannot stand alone");

@@ -3,13 +3,14 @@
 //! The tree is built by binned surface-area heuristic (`build`) and walked by `traverse`, eight boxes or
 //! triangles at a time: with AVX2 where the CPU has it, else by halves. What a ray hits depends neither on the
 //! CPU nor on the shape of the tree: boxes are conservative, no operation is fused, and of two surfaces at the
-//! same distance the one with the lower id is hit.
+//! same distance the one with the lower id is hit. Groups have trees of their own ([`Instances`]).
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod build;
+mod instance;
 mod lanes;
 mod pages;
 mod ray;
@@ -20,6 +21,7 @@ mod triangle;
 use bytemuck::{Pod, Zeroable};
 use caustica_math::Vec3;
 
+pub use instance::{Instance, Instances};
 use pages::Pages;
 pub use sphere::SphereData;
 use triangle::TriangleBlock;
@@ -48,14 +50,27 @@ impl Ray {
 pub struct Hit {
     /// Distance, in units of the direction's length.
     pub t: f32,
-    /// The primitive's id: triangles come first, then spheres.
+    /// The primitive's id: triangles come first, then spheres. In an instance it is the id in the group.
     pub primitive: u32,
+    /// The number of the instance in which it lies; [`Hit::NO_INSTANCE`] if in none.
+    pub instance: u32,
     /// Barycentric coordinate of the triangle's second corner (0 on a sphere).
     pub b1: f32,
     /// Barycentric coordinate of the triangle's third corner (0 on a sphere).
     pub b2: f32,
     /// The triangle's corners (zero on a sphere): they are at hand when it is hit, and far away later.
     pub corners: [Vec3; 3],
+}
+
+impl Hit {
+    /// No instance.
+    pub const NO_INSTANCE: u32 = u32::MAX;
+
+    /// Of a sphere of that id at that distance.
+    fn of_sphere((t, primitive): (f32, u32)) -> Self {
+        let instance = Self::NO_INSTANCE;
+        Self { t, primitive, instance, b1: 0.0, b2: 0.0, corners: [Vec3::ZERO; 3] }
+    }
 }
 
 /// An axis-aligned box.
@@ -132,6 +147,18 @@ impl Child {
         Self(index as u32)
     }
 
+    /// An instance: what is left to it is a leaf of no spheres.
+    fn instance(index: usize) -> Self {
+        debug_assert!(index <= Self::INDEX as usize);
+        Self(Self::LEAF | Self::SPHERES | index as u32)
+    }
+
+    /// The number of the instance, if a leaf that [holds spheres](Child::holds_spheres) is one.
+    #[inline]
+    fn as_instance(self) -> Option<usize> {
+        (self.range().is_empty()).then_some((self.0 & Self::INDEX) as usize)
+    }
+
     /// `count` (1 to 7) triangle blocks or spheres from `first` on.
     fn leaf(first: usize, count: usize, spheres: bool) -> Self {
         debug_assert!((1..=7).contains(&count) && first <= Self::INDEX as usize);
@@ -144,6 +171,7 @@ impl Child {
         self.0 & Self::LEAF != 0
     }
 
+    /// Whether it has spheres in it, or an instance.
     #[inline]
     fn holds_spheres(self) -> bool {
         self.0 & Self::SPHERES != 0
@@ -156,7 +184,7 @@ impl Child {
     }
 }
 
-/// The most triangles and spheres that a tree can refer to.
+/// The most triangles, spheres and instances that a tree can refer to.
 pub const MAX_PRIMITIVES: usize = Child::INDEX as usize;
 
 /// How much care the tree is built with. What rays hit does not depend on it.
@@ -203,6 +231,9 @@ pub struct Bvh {
     nodes: Pages<Node>,
     blocks: Pages<TriangleBlock>,
     spheres: Vec<(SphereData, u32)>,
+    instances: Instances,
+    /// The id of the first of them.
+    first_instance: u32,
     /// Where every ray begins: the first node, or nothing.
     root: Child,
     bounds: Bounds,
@@ -225,13 +256,26 @@ impl Bvh {
         spheres: &[SphereData],
         quality: TreeQuality,
     ) -> Self {
-        build::build(&build::Primitives { positions, triangles, spheres }, quality)
+        let primitives = build::Primitives { positions, triangles, spheres, instances: &[] };
+        build::build(&primitives, quality)
+    }
+
+    /// The same with instances; their ids follow those of the spheres.
+    pub fn with_instances(
+        (positions, triangles): (&[Vec3], &[[u32; 3]]),
+        spheres: &[SphereData],
+        instances: Instances,
+        quality: TreeQuality,
+    ) -> Self {
+        let primitives = build::Primitives { positions, triangles, spheres, instances: instances.boxes() };
+        let tree = build::build(&primitives, quality);
+        Self { instances, ..tree }
     }
 
     /// The same tree, walked as on CPUs without AVX2. Rays hit the same things; tests see that they do.
     #[must_use]
     pub fn portable(self) -> Self {
-        Self { kernels: Kernels::Portable, ..self }
+        Self { kernels: Kernels::Portable, instances: self.instances.portable(), ..self }
     }
 
     /// The box around everything.
@@ -239,9 +283,30 @@ impl Bvh {
         self.bounds
     }
 
-    /// How many bytes it takes.
+    /// Some boxes that together are around everything.
+    fn parts(&self) -> impl Iterator<Item = Bounds> {
+        let corner =
+            |rows: &[[f32; WIDTH]], lane: usize| Vec3::new(rows[0][lane], rows[1][lane], rows[2][lane]);
+        let lanes = self.nodes.first().into_iter().flat_map(|node| (0..WIDTH).map(move |lane| (node, lane)));
+        lanes
+            .map(move |(n, lane)| Bounds {
+                min: corner(&n.bounds[..3], lane),
+                max: corner(&n.bounds[3..], lane),
+            })
+            .filter(|b| !b.is_empty())
+    }
+
+    /// The box around each instance.
+    pub(crate) fn instance_boxes(&self) -> &[Bounds] {
+        self.instances.boxes()
+    }
+
+    /// How many bytes it takes, its groups with it.
     pub fn memory(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.blocks) + size_of_val(&*self.spheres)
+        size_of_val(&*self.nodes)
+            + size_of_val(&*self.blocks)
+            + size_of_val(&*self.spheres)
+            + self.instances.memory()
     }
 
     /// The first hit along the ray.

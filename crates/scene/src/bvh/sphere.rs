@@ -37,7 +37,9 @@ impl SphereData {
         if discriminant < 0.0 && c > 0.0 {
             return None;
         }
-        let q = b + (a * discriminant.max(0.0)).sqrt().copysign(b);
+        let root = (a * discriminant.max(0.0)).sqrt();
+        // From the centre b is zero, of either sign.
+        let q = if b < 0.0 { b - root } else { b + root };
         // Outside, the near root is c/q; inside (c ≤ 0) the positive root is the one wanted.
         let t = if c > 0.0 || b < 0.0 { c / q } else { q / a };
         (t > 0.0 && t <= ray.t_max).then_some(t)
@@ -53,6 +55,18 @@ mod tests {
 
     fn shoot(origin: Vec3, target: Vec3) -> Option<f32> {
         SPHERE.intersect(&Ray { origin, direction: target - origin, t_max: f32::INFINITY })
+    }
+
+    #[test]
+    fn rays_from_the_centre_hit() {
+        let sphere = SphereData { center: Vec3::ZERO, radius: 2.0 };
+        for zero in [0.0, -0.0] {
+            for direction in [Vec3::X, -Vec3::X, Vec3::new(0.3, -0.7, 0.6)] {
+                let ray = Ray { origin: Vec3::splat(zero), direction, t_max: f32::INFINITY };
+                let t = sphere.intersect(&ray).expect("a hit");
+                assert!((t * direction.length() - 2.0).abs() < 1e-5);
+            }
+        }
     }
 
     #[test]

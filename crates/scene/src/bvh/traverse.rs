@@ -3,12 +3,10 @@
 
 use std::mem::MaybeUninit;
 
-use caustica_math::Vec3;
-
 use super::build::MAX_DEPTH;
 use super::lanes::{Lanes, Portable};
 use super::ray::{LaneRay, is_parallel};
-use super::triangle::{BLOCK, Best, NOTHING, SPHERE, TriangleBlock, barycentrics};
+use super::triangle::{BLOCK, Best, NOTHING, SOLID, TriangleBlock, barycentrics};
 use super::{Bvh, Child, Hit, Node, Ray, WIDTH};
 
 /// Entries that wait while the deepest tree is walked: all siblings but one at each level.
@@ -114,6 +112,7 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
     let mut best = Best::<L>::new(ray.t_max);
     let (nodes, blocks): (&[Node], &[TriangleBlock]) = (&bvh.nodes, &bvh.blocks);
     let (mut stack, mut waiting) = (Stack::new(), 0);
+    let mut solid = None;
     let mut current = bvh.root;
     loop {
         while !current.is_leaf() {
@@ -138,11 +137,11 @@ fn first_hit_of<L: Lanes, const P: bool>(bvh: &Bvh, ray: &Ray) -> Option<Hit> {
             }
         }
         if current.is_leaf() {
-            test_leaf((bvh, blocks), current, ray, &lanes, &mut best);
+            test_leaf((bvh, blocks), current, (ray, &lanes), &mut best, &mut solid);
         }
         loop {
             if waiting == 0 {
-                return finish(blocks, ray, &best);
+                return finish(blocks, ray, &best, &solid);
             }
             waiting -= 1;
             // SAFETY: what waits has been written.
@@ -217,13 +216,13 @@ fn lane(mask: u32) -> usize {
 }
 
 #[inline(always)]
-fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>) -> Option<Hit> {
+fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>, solid: &Option<Hit>) -> Option<Hit> {
     let (t, primitive) = (best.t, best.primitive);
     if primitive == NOTHING {
         return None;
     }
-    if best.place == SPHERE {
-        return Some(Hit { t, primitive, b1: 0.0, b2: 0.0, corners: [Vec3::ZERO; 3] });
+    if best.place == SOLID {
+        return *solid;
     }
     let lane = best.place % BLOCK;
     let (v, w, det) =
@@ -231,16 +230,16 @@ fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>) -> Opti
     // SAFETY: the place is where a triangle was hit.
     let corners = unsafe { blocks.get_unchecked(best.place / BLOCK) }.corners(lane);
     let [b1, b2] = if det == 0.0 { barycentrics(ray, corners) } else { [v / det, w / det] };
-    Some(Hit { t, primitive, b1, b2, corners })
+    Some(Hit { t, primitive, instance: Hit::NO_INSTANCE, b1, b2, corners })
 }
 
 #[inline(always)]
 fn test_leaf<L: Lanes, const P: bool>(
     (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
-    ray: &Ray,
-    lanes: &LaneRay<L, P>,
+    (ray, lanes): (&Ray, &LaneRay<L, P>),
     best: &mut Best<L>,
+    solid: &mut Option<Hit>,
 ) {
     if !leaf.holds_spheres() {
         for index in leaf.range() {
@@ -249,15 +248,31 @@ fn test_leaf<L: Lanes, const P: bool>(
         }
         return;
     }
-    if let Some((t, primitive)) = test_spheres(bvh, leaf, ray, (best.t, best.primitive)) {
-        (best.t, best.primitive, best.place) = (t, primitive, SPHERE);
+    if let Some((t, primitive)) = test_solids(bvh, leaf, ray, (best.t, best.primitive), solid) {
+        (best.t, best.primitive, best.place) = (t, primitive, SOLID);
     }
 }
 
-/// A hit of the leaf's that comes before the best so far.
+/// A hit of a leaf of spheres, or of an instance, that comes before the best so far: its distance and the primitive's
+/// id. What is hit is put into `solid`.
 #[cold]
 #[inline(never)]
-fn test_spheres(bvh: &Bvh, leaf: Child, ray: &Ray, mut best: (f32, u32)) -> Option<(f32, u32)> {
+fn test_solids(
+    bvh: &Bvh,
+    leaf: Child,
+    ray: &Ray,
+    mut best: (f32, u32),
+    solid: &mut Option<Hit>,
+) -> Option<(f32, u32)> {
+    if let Some(index) = leaf.as_instance() {
+        let hit = bvh.instances.closest(index, &Ray { t_max: best.0, ..*ray })?;
+        let id = bvh.first_instance + index as u32;
+        let is_first = hit.t < best.0 || (hit.t == best.0 && id < best.1);
+        return is_first.then(|| {
+            *solid = Some(hit);
+            (hit.t, id)
+        });
+    }
     let before = best;
     for (sphere, primitive) in &bvh.spheres[leaf.range()] {
         if let Some(t) = sphere.intersect(&Ray { t_max: best.0, ..*ray })
@@ -266,7 +281,10 @@ fn test_spheres(bvh: &Bvh, leaf: Child, ray: &Ray, mut best: (f32, u32)) -> Opti
             best = (t, *primitive);
         }
     }
-    (best != before).then_some(best)
+    (best != before).then(|| {
+        *solid = Some(Hit::of_sphere(best));
+        best
+    })
 }
 
 /// Whether the ray hits anything.
@@ -326,7 +344,7 @@ fn is_hit<L: Lanes, const P: bool>(
     lanes: &LaneRay<L, P>,
 ) -> bool {
     if leaf.holds_spheres() {
-        return is_sphere_hit(bvh, leaf, ray);
+        return is_solid_hit(bvh, leaf, ray);
     }
     // SAFETY: leaves without spheres are ranges of blocks.
     for block in unsafe { blocks.get_unchecked(leaf.range()) } {
@@ -339,6 +357,9 @@ fn is_hit<L: Lanes, const P: bool>(
 
 #[cold]
 #[inline(never)]
-fn is_sphere_hit(bvh: &Bvh, leaf: Child, ray: &Ray) -> bool {
+fn is_solid_hit(bvh: &Bvh, leaf: Child, ray: &Ray) -> bool {
+    if let Some(index) = leaf.as_instance() {
+        return bvh.instances.occluded(index, ray);
+    }
     bvh.spheres[leaf.range()].iter().any(|(s, _)| s.intersect(ray).is_some())
 }

@@ -43,8 +43,8 @@ impl<L: Lanes> Best<L> {
 }
 /// No primitive.
 pub(super) const NOTHING: u32 = u32::MAX;
-/// The place of spheres.
-pub(super) const SPHERE: usize = usize::MAX;
+/// The place of spheres and instances.
+pub(super) const SOLID: usize = usize::MAX;
 
 /// What a block's test found.
 struct Crossings<L> {

@@ -1,7 +1,7 @@
 use caustica_math::{Rgb, Transform};
 use serde::{Deserialize, Serialize};
 
-use super::ImageId;
+use super::{ImageId, Texture};
 use crate::Origin;
 
 /// A lamp that is not a surface. One that emits nothing gets a warning; colours that are negative or not finite, and
@@ -39,6 +39,41 @@ pub enum LightKind {
         /// Half angle beyond which there is no light, in degrees; at least the inner one.
         outer_angle: f32,
     },
+    /// A point that lights a cone. The intensity falls from the inner to the outer angle in proportion to the angle.
+    LinearSpot {
+        /// The axis is +z of this frame, the place its origin; only rotation and place count.
+        to_world: Transform,
+        /// Radiant intensity on the axis.
+        intensity: Rgb,
+        /// A factor on it for each direction d: of a square that just holds the cone, at
+        /// ½ + x/(2z·tan outer), ½ − y/(2z·tan outer). Only for outer angles below 90°.
+        picture: Option<Texture>,
+        /// Half angle of the full-intensity cone, in degrees.
+        inner_angle: f32,
+        /// Half angle beyond which there is no light, in degrees; at least the inner one.
+        outer_angle: f32,
+    },
+    /// A point that throws a picture along +z of its frame, +x to the picture's left, +y up.
+    Projector {
+        /// Its frame; only rotation and place count.
+        to_world: Transform,
+        /// The irradiance on a plane across the axis at distance one; the unit square is the whole picture.
+        irradiance: Texture,
+        /// A factor on it.
+        scale: f32,
+        /// The horizontal angle, in degrees.
+        fov: f32,
+        /// The picture's width over its height.
+        aspect: f32,
+    },
+    /// A shape that emits along its geometric normals alone: as much as a lamp of that radiance over π would in all.
+    /// Light paths alone find it, and no camera sees it.
+    Collimated {
+        /// The index of the shape in [`super::Description::shapes`]. It may not be a lamp otherwise.
+        shape: u32,
+        /// The radiant exitance (W·m⁻²), which is the irradiance on a parallel surface in front.
+        exitance: Texture,
+    },
     /// Parallel light from infinitely far away.
     Directional {
         /// The direction in which the light travels; of any length but zero.
@@ -61,5 +96,17 @@ pub enum LightKind {
         to_world: Transform,
         /// Factor on the image's values.
         scale: f32,
+        /// Where its rows lie.
+        rows: EnvironmentRows,
     },
+}
+
+/// Where the rows of pixels of an environment map lie, from the pole +y (0) to the pole −y (1).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EnvironmentRows {
+    /// The middle of row r of h at (r + ½)/h.
+    #[default]
+    Inside,
+    /// The middle of row r of h at r/(h − 1): those of the first and the last are the poles.
+    OnPoles,
 }

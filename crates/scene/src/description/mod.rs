@@ -12,6 +12,7 @@
 //! otherwise either, by rounding; rays that leave one start beyond the other.
 
 mod camera;
+mod instance;
 mod integrator;
 mod light;
 mod material;
@@ -22,8 +23,9 @@ use serde::{Deserialize, Serialize};
 
 pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
+pub use instance::{Group, GroupId, Instance};
 pub use integrator::{Integrator, Technique};
-pub use light::{Light, LightKind};
+pub use light::{EnvironmentRows, Light, LightKind};
 pub use material::{
     Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,
 };
@@ -47,6 +49,12 @@ pub struct Description {
     pub materials: Vec<Material>,
     /// Surfaces, with their materials and, for lamps, their emission.
     pub shapes: Vec<Shape>,
+    /// Groups of surfaces, named by instances.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<Group>,
+    /// Where groups are seen.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub instances: Vec<Instance>,
     /// Lamps that are not surfaces.
     pub lights: Vec<Light>,
 }
@@ -56,6 +64,12 @@ impl Description {
     pub fn add_material(&mut self, kind: MaterialKind) -> MaterialId {
         self.materials.push(Material { kind, origin: None });
         MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// All surfaces: those that stand for themselves, then those of the groups in turn. [`crate::surface::Surfaces`]
+    /// numbers them so.
+    pub fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
+        self.shapes.iter().chain(self.groups.iter().flat_map(|g| &g.shapes))
     }
 
     /// Adds an image and returns its id.

@@ -2,11 +2,12 @@ use std::f32::consts::PI;
 
 use caustica_math::elementary::safe_sqrt;
 use caustica_math::spherical::{between, cross, dot};
-use caustica_math::{AreaPdf, Distribution1d, Frame, Spectrum, Vec2, Vec3, warp};
+use caustica_math::{AreaPdf, Distribution1d, Frame, Mass, SolidAnglePdf, Spectrum, Vec2, Vec3, warp};
 
+use super::lights::{LEAST_SHARE, Part};
 use super::quad::Quad;
 use super::seen::{Reach, Seen};
-use super::table::LEAST_SHARE;
+use super::tree::{Cone as Normals, Item, Leaf};
 use super::{Anchor, Emission, EmissionPdf, LightPoint, Surroundings};
 use crate::bvh::SphereData;
 use crate::description::Texture;
@@ -98,6 +99,61 @@ impl AreaLight {
         around.textures.spectrum(&self.radiance, uv, around.wavelengths)
     }
 
+    /// Its parts for the hierarchy, given its index among the lamps and its power.
+    pub(super) fn parts(
+        &self,
+        light: u32,
+        power: f64,
+        around: &Surroundings<'_>,
+        tell: &mut dyn FnMut(Item),
+    ) {
+        // A flat lamp of the power π·L·A has the intensity L·A; a sphere of 4π²·r²·L has π·r²·L.
+        let intensity = power / f64::from(PI);
+        let triangle = |t: u32| {
+            let [a, b, c] = around.surfaces.corners(t);
+            let normal = around.surfaces.triangle_point(t, 0.25, 0.25).normal;
+            (a.min(b).min(c), a.max(b).max(c), Normals::flat(normal))
+        };
+        let item = |part, (min, max, cone), intensity| Item {
+            leaf: Leaf { light, part },
+            min,
+            max,
+            cone,
+            intensity,
+        };
+        match &self.surface {
+            Surface::Mesh { first_primitive, choice, .. } => (0..choice.len() as u32).for_each(|i| {
+                let share = f64::from(choice.mass(i as usize).0.max(LEAST_SHARE));
+                tell(item(i, triangle(first_primitive + i), intensity * share));
+            }),
+            Surface::Quad(quad) => {
+                let [a, b] = quad.primitives().map(triangle);
+                tell(item(0, (a.0.min(b.0), a.1.max(b.1), a.2.around(b.2)), intensity));
+            }
+            Surface::Sphere { data, .. } => {
+                let radius = Vec3::splat(data.radius);
+                let bounds = (data.center - radius, data.center + radius, Normals::ALL);
+                tell(item(0, bounds, 0.25 * intensity));
+            }
+        }
+    }
+
+    /// Which part a primitive is.
+    pub(super) fn part_of(&self, primitive: u32) -> u32 {
+        match &self.surface {
+            Surface::Mesh { first_primitive, .. } => primitive - first_primitive,
+            Surface::Quad(_) | Surface::Sphere { .. } => 0,
+        }
+    }
+
+    /// How many parts it has.
+    pub(super) fn part_count(&self) -> usize {
+        match &self.surface {
+            Surface::Mesh { choice, .. } => choice.len(),
+            Surface::Quad(_) | Surface::Sphere { .. } => 1,
+        }
+    }
+
     /// Whether a part of it is to be chosen.
     pub(super) fn offers_a_choice(&self) -> bool {
         matches!(self.surface, Surface::Mesh { .. })
@@ -164,11 +220,31 @@ impl AreaLight {
         })
     }
 
+    /// Emission along the normal.
+    pub(super) fn sample_collimated(
+        &self,
+        light: u32,
+        choice: f32,
+        u: [f32; 2],
+        around: &Surroundings<'_>,
+    ) -> Emission {
+        let (point, pdf) = self.sample_point(light, choice, u, around);
+        let direction = point.normal;
+        Emission {
+            point,
+            origin: point.off_surface(direction),
+            direction,
+            radiance: self.radiance_at(point.uv, around),
+            cos: 1.0,
+            pdf: EmissionPdf { point: pdf, direction: SolidAnglePdf(1.0) },
+        }
+    }
+
     pub(super) fn sample_towards(
         &self,
         light: u32,
         from: Vec3,
-        (choice, u): (f32, [f32; 2]),
+        (part, u): (Part, [f32; 2]),
         around: &Surroundings<'_>,
     ) -> Option<(LightPoint, AreaPdf)> {
         match &self.surface {
@@ -180,19 +256,30 @@ impl AreaLight {
                     return Some((point, near.area_pdf(from, &point)));
                 }
             },
-            Surface::Mesh { first_primitive, choice: table, reach, .. } => {
-                let chosen = table.sample(choice);
-                let triangle = first_primitive + chosen.index as u32;
-                match reach.triangle(|| around.surfaces.corners(triangle), from) {
-                    Seen::Behind => return None,
-                    Seen::ByArea => {}
-                    Seen::Near(near) => {
-                        let [b1, b2] = near.shape.sample(u);
-                        let p = around.surfaces.triangle_point(triangle, b1, b2);
-                        let point = LightPoint::on_surface(light, &p);
-                        return Some((point, near.area_pdf(from, &point) * chosen.mass));
+            Surface::Mesh { first_primitive, choice: table, density, reach } => {
+                let (index, mass) = match part {
+                    Part::Of(index) => (index as usize, None),
+                    Part::By(choice) => {
+                        let chosen = table.sample(choice);
+                        (chosen.index, Some(chosen.mass))
                     }
-                }
+                };
+                let triangle = first_primitive + index as u32;
+                let corners = || around.surfaces.corners(triangle);
+                let on = |[b1, b2]: [f32; 2]| {
+                    LightPoint::on_surface(light, &around.surfaces.triangle_point(triangle, b1, b2))
+                };
+                return match reach.triangle(corners, from) {
+                    Seen::Behind => None,
+                    Seen::ByArea => {
+                        let pdf = mass.map_or_else(|| uniform_pdf(corners()), |_| AreaPdf(density[index]));
+                        Some((on(warp::uniform_triangle(u)), pdf))
+                    }
+                    Seen::Near(near) => {
+                        let point = on(near.shape.sample(u));
+                        Some((point, near.area_pdf(from, &point) * mass.unwrap_or(Mass::ONE)))
+                    }
+                };
             }
             Surface::Sphere { primitive, data } => {
                 if let Some(cone) = Cone::new(data, from) {
@@ -202,10 +289,16 @@ impl AreaLight {
                 }
             }
         }
-        Some(self.sample_point(light, choice, u, around))
+        Some(self.sample_point(light, 0.0, u, around))
     }
 
-    pub(super) fn towards_pdf(&self, from: Vec3, point: &LightPoint, around: &Surroundings<'_>) -> AreaPdf {
+    /// The density of finding a point: among all, or (in a hierarchy, which chooses the part) on its part alone.
+    pub(super) fn towards_pdf(
+        &self,
+        from: Vec3,
+        (point, in_parts): (&LightPoint, bool),
+        around: &Surroundings<'_>,
+    ) -> AreaPdf {
         match &self.surface {
             Surface::Quad(quad) => match quad.seen(from) {
                 Seen::Behind => AreaPdf::ZERO,
@@ -213,9 +306,12 @@ impl AreaLight {
                 Seen::Near(near) => near.area_pdf(from, point),
             },
             Surface::Mesh { first_primitive, choice, reach, .. } => {
-                match reach.triangle(|| around.surfaces.corners(point.primitive), from) {
+                let corners = || around.surfaces.corners(point.primitive);
+                match reach.triangle(corners, from) {
                     Seen::Behind => AreaPdf::ZERO,
+                    Seen::ByArea if in_parts => uniform_pdf(corners()),
                     Seen::ByArea => self.area_pdf(point.primitive),
+                    Seen::Near(near) if in_parts => near.area_pdf(from, point),
                     Seen::Near(near) => {
                         let mass = choice.mass((point.primitive - first_primitive) as usize);
                         near.area_pdf(from, point) * mass
@@ -281,6 +377,11 @@ impl Cone {
         (cos > 0.0)
             .then(|| AreaPdf(warp::uniform_cone_pdf(self.one_minus_cos).0 * cos / (distance * distance)))
     }
+}
+
+/// The density of even points on a triangle.
+fn uniform_pdf(corners: [Vec3; 3]) -> AreaPdf {
+    AreaPdf((1.0 / area(corners)) as f32)
 }
 
 fn area([a, b, c]: [Vec3; 3]) -> f64 {

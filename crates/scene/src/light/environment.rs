@@ -4,7 +4,7 @@ use caustica_math::elementary::{atan2, sin, sin_cos, sin_cos_turns};
 use caustica_math::{Distribution2d, Rgb, SolidAnglePdf, Spectrum, Vec3, warp};
 
 use super::Surroundings;
-use crate::description::{Image, Wrap};
+use crate::description::{EnvironmentRows, Image, Wrap};
 use crate::texture::bilinear;
 
 /// Light from everywhere: constant, or an equirectangular map.
@@ -23,6 +23,7 @@ pub struct EnvironmentMap {
     scale: f32,
     /// Map axes in world space.
     axes: [Vec3; 3],
+    rows: EnvironmentRows,
     table: Distribution2d,
     /// ∫ luminance dω.
     flux: f64,
@@ -50,27 +51,80 @@ fn square_to_direction([x, y]: [f32; 2]) -> (Vec3, f32) {
 impl EnvironmentMap {
     /// Builds the sampling table. `None` if the image is black.
     ///
-    /// Cells are weighed by the mean of their 3 × 3 neighbours, because a bilinear look-up reaches into
-    /// those: wherever there is radiance there is density.
-    pub fn new(index: u32, image: &Image, scale: f32, axes: [Vec3; 3]) -> Option<Self> {
+    /// Cells are weighed by the mean of the pixels that a bilinear look-up in them reaches into: wherever there is
+    /// radiance there is density.
+    pub fn new(
+        index: u32,
+        image: &Image,
+        (scale, rows): (f32, EnvironmentRows),
+        axes: [Vec3; 3],
+    ) -> Option<Self> {
         let (w, h) = (image.width as usize, image.height as usize);
+        // One row cannot lie on two poles.
+        let rows = if h == 1 { EnvironmentRows::Inside } else { rows };
         let luminance = |row: usize, column: usize| image.pixels[row * w + column].luminance();
-        let mut weights = Vec::with_capacity(w * h);
-        let mut flux = 0.0_f64;
-        for row in 0..h {
-            let sin_theta = sin((row as f32 + 0.5) / h as f32 * PI);
-            let rows = [row.saturating_sub(1), row, (row + 1).min(h - 1)];
+        let cells = if rows == EnvironmentRows::OnPoles { h - 1 } else { h };
+        let mut weights = Vec::with_capacity(w * cells);
+        for cell in 0..cells {
+            let sin_theta = sin((cell as f32 + 0.5) / cells as f32 * PI);
+            let (reached, count) = reached_rows(cell, h, rows);
             for column in 0..w {
                 let columns = [(column + w - 1) % w, column, (column + 1) % w];
-                let sum: f32 = rows.iter().flat_map(|r| columns.iter().map(|c| luminance(*r, *c))).sum();
-                weights.push(sum / 9.0 * sin_theta);
-                flux += f64::from(luminance(row, column) * sin_theta);
+                let each = reached.iter().flat_map(|(r, part)| columns.map(|c| luminance(*r, c) * part));
+                weights.push(each.sum::<f32>() / count * sin_theta);
             }
         }
-        // The solid angle of a cell is its width times the difference of two cosines.
-        let cell = TAU / w as f32 * 2.0 * sin(0.5 * PI / h as f32);
-        let flux = flux * f64::from(cell) * f64::from(scale);
-        Some(Self { image: index, scale, axes, table: Distribution2d::new(&weights, w)?, flux })
+        let mut flux = 0.0;
+        for row in 0..h {
+            let sum: f64 = (0..w).map(|column| f64::from(luminance(row, column))).sum();
+            flux += sum * row_share(row, h, rows);
+        }
+        let flux = flux * f64::from(TAU) / w as f64 * f64::from(scale);
+        Some(Self { image: index, scale, axes, rows, table: Distribution2d::new(&weights, w)?, flux })
+    }
+
+    /// Where the look-up finds a height of the square.
+    fn row_at(&self, y: f32, height: u32) -> f32 {
+        match self.rows {
+            EnvironmentRows::Inside => y,
+            EnvironmentRows::OnPoles => (y * (height - 1) as f32 + 0.5) / height as f32,
+        }
+    }
+}
+
+/// The rows that look-ups in a row of cells reach into, with their parts, and the number of pixels that this is.
+fn reached_rows(cell: usize, h: usize, rows: EnvironmentRows) -> ([(usize, f32); 4], f32) {
+    let (above, below) = (cell.saturating_sub(1), (cell + 1).min(h - 1));
+    match rows {
+        EnvironmentRows::Inside => ([(above, 1.0), (cell, 1.0), (below, 1.0), (cell, 0.0)], 9.0),
+        // Beyond the two between which it lies, rounding reaches.
+        EnvironmentRows::OnPoles => {
+            ([(above, ROUNDING), (cell, 1.0), (below, 1.0), ((cell + 2).min(h - 1), ROUNDING)], 6.0)
+        }
+    }
+}
+
+/// The part of a row that only rounding can reach.
+const ROUNDING: f32 = 1.0 / 64.0;
+
+/// ∫ sin θ dθ over what a row lights: its own share, or from the row above to the one below in linear descents.
+fn row_share(row: usize, h: usize, rows: EnvironmentRows) -> f64 {
+    match rows {
+        EnvironmentRows::Inside => {
+            let sin_theta = sin((row as f32 + 0.5) / h as f32 * PI);
+            f64::from(sin_theta) * 2.0 * f64::from(sin(0.5 * PI / h as f32))
+        }
+        EnvironmentRows::OnPoles => {
+            let step = PI / (h - 1) as f32;
+            let half = f64::from(sin(0.5 * step)) / (0.5 * f64::from(step));
+            if row == 0 || row + 1 == h {
+                // 1 − sin(x)/x.
+                let x2 = f64::from(step) * f64::from(step);
+                x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0)))
+            } else {
+                f64::from(sin(row as f32 * step)) * f64::from(step) * half * half
+            }
+        }
     }
 }
 
@@ -120,7 +174,8 @@ impl EnvironmentLight {
             Self::Map(map) => {
                 let [x, y] = direction_to_square(map.local(towards));
                 let image = &around.textures.images[map.image as usize];
-                let rgb: Rgb = bilinear(image, x, y, [Wrap::Repeat, Wrap::Clamp]) * map.scale;
+                let row = map.row_at(y, image.height);
+                let rgb: Rgb = bilinear(image, x, row, [Wrap::Repeat, Wrap::Clamp]) * map.scale;
                 around.wavelengths.spectrum(rgb)
             }
         }

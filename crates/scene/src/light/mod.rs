@@ -7,9 +7,13 @@
 mod area;
 mod delta;
 mod environment;
+mod lights;
+mod projector;
 mod quad;
+mod receiver;
 mod seen;
 mod table;
+mod tree;
 
 use caustica_math::{AreaPdf, SolidAnglePdf, Spectrum, Vec2, Vec3, Wavelengths};
 
@@ -17,10 +21,14 @@ use crate::surface::{SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 
 pub use area::AreaLight;
-pub use delta::{DirectionalLight, SpotLight};
+pub use delta::{DirectionalLight, Falloff, SpotLight};
 pub use environment::{EnvironmentLight, EnvironmentMap};
+pub use lights::{FEWEST_PARTS, Lights};
+pub use projector::ProjectorLight;
+pub use receiver::Receiver;
+pub use table::LightQuery;
 pub(crate) use table::power_through_disk;
-pub use table::{LightQuery, Lights};
+pub use tree::Leaf;
 
 /// What a point on a lamp is attached to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -194,6 +202,10 @@ pub enum Light {
     },
     /// A point that lights a cone.
     Spot(SpotLight),
+    /// A point that throws a picture.
+    Projector(Box<ProjectorLight>),
+    /// A surface that emits along its normals alone.
+    Collimated(AreaLight),
     /// Parallel light.
     Directional(DirectionalLight),
     /// Light from everywhere.
@@ -204,7 +216,14 @@ impl Light {
     /// Whether a path can never hit it by chance.
     #[inline]
     pub fn is_delta(&self) -> bool {
-        matches!(self, Self::Point { .. } | Self::Spot(_) | Self::Directional(_))
+        match self {
+            Self::Point { .. }
+            | Self::Spot(_)
+            | Self::Projector(_)
+            | Self::Collimated(_)
+            | Self::Directional(_) => true,
+            Self::Area(_) | Self::Environment(_) => false,
+        }
     }
 
     /// Whether it is infinitely far away.

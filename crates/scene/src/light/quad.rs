@@ -83,6 +83,11 @@ impl Quad {
         })
     }
 
+    /// Its two triangles.
+    pub fn primitives(&self) -> [u32; 2] {
+        self.halves.map(|h| h.primitive)
+    }
+
     /// The density of points by area.
     #[inline]
     pub fn area_pdf(&self, primitive: u32) -> AreaPdf {

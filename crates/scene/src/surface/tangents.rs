@@ -4,12 +4,17 @@ use std::f32::consts::PI;
 
 use caustica_math::{Frame, Vec2, Vec3};
 
+use crate::bvh::Hit;
+
 use super::{FlatSphere, NONE, SurfacePoint, Surfaces};
 
 impl Surfaces {
     /// ∂p/∂u and ∂p/∂v at a point, in the world. `None` where texture coordinates are missing or say nothing, as at
     /// the poles of a sphere.
     pub fn derivatives(&self, point: &SurfacePoint) -> Option<[Vec3; 2]> {
+        if point.instance != Hit::NO_INSTANCE {
+            return self.derivatives_inside(point);
+        }
         match (point.primitive as usize).checked_sub(self.triangles.len()) {
             None => self.triangle_derivatives(point.primitive, &self.corners(point.primitive)),
             Some(sphere) => self.spheres[sphere].derivatives(point.normal),

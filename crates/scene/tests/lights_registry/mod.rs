@@ -4,11 +4,12 @@
 #![allow(dead_code)]
 
 mod polygons;
+mod thrown;
 
 use std::f64::consts::PI;
 
 use caustica_math::{Rgb, SampleStream, StreamId, Transform, Vec3, Wavelengths};
-use caustica_scene::description::{Image, ImageId, LightKind, Texture, TextureTransform};
+use caustica_scene::description::{EnvironmentRows, Image, ImageId, LightKind, Texture, TextureTransform};
 use caustica_scene::light::{Anchor, EnvironmentLight, Light, LightPoint, LightQuery};
 use caustica_scene::{Description, Scene};
 use caustica_testkit::build;
@@ -39,7 +40,7 @@ pub fn luminance() -> f64 {
 }
 
 /// How many kinds [`kind_of`] tells apart.
-pub const KINDS: usize = 7;
+pub const KINDS: usize = 9;
 
 /// A number for each kind of lamp. A kind that is missing here does not compile; one that is missing from
 /// [`examples`] fails the test that asks for all numbers.
@@ -52,6 +53,8 @@ pub fn kind_of(example: &Example) -> usize {
         Light::Directional(_) => 4,
         Light::Environment(EnvironmentLight::Constant(_)) => 5,
         Light::Environment(EnvironmentLight::Map(_)) => 6,
+        Light::Projector(_) => 7,
+        Light::Collimated(_) => 8,
     }
 }
 
@@ -63,8 +66,8 @@ impl Example {
     /// What the lamp's points are attached to.
     pub fn anchor(&self) -> Anchor {
         match self.scene.lamps().get(0) {
-            Light::Area(_) => Anchor::Surface,
-            Light::Point { .. } | Light::Spot(_) => Anchor::Point,
+            Light::Area(_) | Light::Collimated(_) => Anchor::Surface,
+            Light::Point { .. } | Light::Spot(_) | Light::Projector(_) => Anchor::Point,
             Light::Directional(_) | Light::Environment(_) => Anchor::Infinite,
         }
     }
@@ -96,6 +99,7 @@ pub fn examples() -> Vec<Example> {
     all.extend(meshes());
     all.extend(polygons::examples());
     all.extend(points());
+    all.extend(thrown::examples());
     all.extend(infinite());
     all
 }
@@ -279,8 +283,19 @@ fn infinite() -> Vec<Example> {
     let directional = LightKind::Directional { direction: [0.0, -2.0, 0.0], irradiance: COLOUR };
     let constant = LightKind::Constant { radiance: COLOUR };
     let to_world = Transform::rotate(50.0, [1.0, 2.0, 0.5]);
-    let turned = LightKind::Environment { image: ImageId(0), to_world, scale: 2.0 };
-    let upright = LightKind::Environment { image: ImageId(0), to_world: Transform::IDENTITY, scale: 1.0 };
+    let turned = LightKind::Environment { image: ImageId(0), to_world, scale: 2.0, rows: Default::default() };
+    let upright = LightKind::Environment {
+        image: ImageId(0),
+        to_world: Transform::IDENTITY,
+        scale: 1.0,
+        rows: EnvironmentRows::Inside,
+    };
+    let on_poles = LightKind::Environment {
+        image: ImageId(0),
+        to_world: Transform::IDENTITY,
+        scale: 1.0,
+        rows: EnvironmentRows::OnPoles,
+    };
     let known = |v: View, e: f64| View { irradiance: Some(e), ..v };
     let mut all = vec![
         with_radius(
@@ -296,7 +311,12 @@ fn infinite() -> Vec<Example> {
             vec![known(up, PI * luminance()), known(slanted, PI * luminance())],
         ),
     ];
-    for (name, kind) in [("environment map", upright), ("turned environment map", turned)] {
+    let maps = [
+        ("environment map", upright),
+        ("turned environment map", turned),
+        ("environment map with rows on its poles", on_poles),
+    ];
+    for (name, kind) in maps {
         let mut example = with_radius(name, lamp(kind, Some(sky())), 1.0, vec![up, slanted]);
         example.power *= over_sphere(&example, |_| 1.0);
         for i in 0..2 {

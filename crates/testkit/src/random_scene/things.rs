@@ -7,7 +7,7 @@ use caustica_scene::description::{
 };
 
 use super::choices::Choices;
-use crate::build::{add, ellipsoid, quad, sphere};
+use crate::build::{add, ellipsoid, group, instance, quad, sphere};
 
 /// Adds a shape, with its material and, now and then, light.
 pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
@@ -34,6 +34,23 @@ pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
     }
     if choices.once_in(2) {
         d.shapes[index].emission = Some(texture(true, choices));
+    }
+}
+
+/// Shows the last shape that is no lamp as one to three instances.
+pub fn instances(d: &mut Description, scale: f32, choices: &mut Choices) {
+    let Some(last) = d.shapes.iter().rposition(|s| s.emission.is_none()) else { return };
+    let shape = d.shapes.remove(last);
+    d.shapes.push(shape);
+    let group = group(d, d.shapes.len() - 1);
+    for _ in 0..=choices.below(3) {
+        let factors = [(); 3].map(|()| {
+            let size = f64::from(0.5 + choices.unit());
+            if choices.once_in(4) { -size } else { size }
+        });
+        let turned = Transform::rotate(f64::from(choices.signed()) * 180.0, [0.3, 1.0, 0.2]);
+        let to = choices.vector().map(|c| f64::from(c * scale));
+        instance(d, group, Transform::scale(factors).then(turned).then(Transform::translate(to)));
     }
 }
 

@@ -82,10 +82,10 @@ impl Kernel<'_> {
             all.push(VertexDensities { from_light, from_camera: v.forward, delta: inward > 0 && v.delta });
         }
         let next_to_lamp = match (light.first(), eye.len()) {
-            (Some(v), _) => Some(v.point.position),
+            (Some(v), _) => Some(v.receiver()),
             (None, n) => {
                 let skip = usize::from(s == 0 && !escaped);
-                n.checked_sub(1 + skip).map(|i| eye[i].point.position)
+                n.checked_sub(1 + skip).map(|i| eye[i].receiver())
             }
         };
         let found = next_to_lamp.map_or(0.0, |from| lights.towards_pdf(from, &joined.lamp).0);

@@ -73,7 +73,7 @@ impl Kernel<'_> {
                         0.0
                     } else {
                         let share = if is_planted(Fault::NextEventDensity) { 0.5 } else { 1.0 };
-                        h.of(share * lights.towards_pdf(from.point.position, &end.lamp).0 / end.forward)
+                        h.of(share * lights.towards_pdf(from.receiver(), &end.lamp).0 / end.forward)
                     }
                 };
                 let share = if t > 2 { self.walk_share(&sample.eye.vertices[..t - 2]) } else { 1.0 };

@@ -32,7 +32,7 @@ impl Kernel<'_> {
                 continue;
             }
             let (choice, u) = numbers.next_event(i);
-            if let Some(found) = lights.sample_towards(vertex.point.position, choice, u) {
+            if let Some(found) = lights.sample_towards(vertex.receiver(), choice, u) {
                 self.next_event::<S>(sample, i + 2, &found, candidates);
             }
         }

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use caustica_math::{Spectrum, Vec3, Wavelengths};
 use caustica_render::{Control, available_threads};
 use caustica_scene::Scene;
+use caustica_scene::description::Crop;
 use caustica_transport::vertex::Vertex;
 use caustica_transport::{Kernel, Scratch, Settings, Subpaths};
 use serde::Serialize;
@@ -53,6 +54,9 @@ const NEAR: f32 = 0.012;
 /// Samples per pixel whose light paths are kept.
 const PASSES: u32 = 24;
 
+/// The most pixels of a pass: of larger pictures, some take part.
+const MOST_PIXELS: u64 = 1 << 14;
+
 /// Smaller shares are not told.
 const NEGLIGIBLE: f64 = 0.005;
 
@@ -77,24 +81,24 @@ pub fn estimate(
     let kernel = Kernel::new(scene, settings);
     let threads = question.threads.unwrap_or_else(available_threads);
     let limit = question.settings.max_depth.unwrap_or(u32::MAX) as usize;
-    let window = scene.film.window();
     let mut cells = Cells::new();
-    let mut paths = 0_u64;
-    let each = |pass: usize, take: &mut dyn FnMut([u32; 2], &Subpaths<'_>)| {
+    let each = |window: Crop, pass: usize, take: &mut dyn FnMut(&Subpaths<'_>)| -> u64 {
         let mut scratch = Scratch::default();
-        for y in window.y..window.y + window.height {
-            for x in window.x..window.x + window.width {
-                take([x, y], &kernel.subpaths([x, y], pass as u32, &mut scratch));
-            }
+        let mut count = 0;
+        for pixel in some_pixels(window, MOST_PIXELS) {
+            take(&kernel.subpaths(pixel, pass as u32, &mut scratch));
+            count += 1;
         }
+        count
     };
     let shoot = |pass: usize| {
         let mut photons = Vec::new();
-        each(pass, &mut |_, paths| arrivals(scene, paths, &mut photons));
-        photons
+        let paths = each(scene.film.window(), pass, &mut |paths| arrivals(scene, paths, &mut photons));
+        (photons, paths)
     };
-    let done = jobs::run((PASSES as usize, threads), control, shoot, |photons| {
-        paths += u64::from(window.width) * u64::from(window.height);
+    let mut paths = 0;
+    let done = jobs::run((PASSES as usize, threads), control, shoot, |(photons, of_pass)| {
+        paths += of_pass;
         for photon in photons {
             cells.entry(cell(photon.at, near)).or_default().push(photon);
         }
@@ -106,14 +110,13 @@ pub fn estimate(
     let mut sums: BTreeMap<String, Sources> = BTreeMap::new();
     let gather = |pass: usize| {
         let mut sums: BTreeMap<String, Sources> = BTreeMap::new();
-        each(pass, &mut |pixel, paths| {
-            if region.pixel(pixel).is_some() {
-                gather_at(paths, (&cells, near, limit), &mut sums);
-            }
-        });
-        sums
+        let looks =
+            each(region.window, pass, &mut |paths| gather_at(paths, (&cells, near, limit), &mut sums));
+        (sums, looks)
     };
-    let done = jobs::run((PASSES as usize, threads), control, gather, |part| {
+    let mut looks = 0;
+    let done = jobs::run((PASSES as usize, threads), control, gather, |(part, of_pass)| {
+        looks += of_pass;
         for (pattern, sources) in part {
             let own = sums.entry(pattern).or_default();
             sources.into_iter().for_each(|(k, v)| *own.entry(k).or_default() += v);
@@ -122,7 +125,7 @@ pub fn estimate(
     if !done {
         return Err(VerifyError::Stopped);
     }
-    Ok(told(scene, question, survey, (&sums, scale / f64::from(PASSES))))
+    Ok(told(scene, question, survey, (&sums, scale / looks as f64)))
 }
 
 fn told(
@@ -132,7 +135,7 @@ fn told(
     (sums, scale): (&BTreeMap<String, Sources>, f64),
 ) -> Vec<Missing> {
     let all: f64 = sums.values().flat_map(|s| s.values()).sum::<f64>() * scale;
-    let total = all + survey.light() / f64::from(survey.passes);
+    let total = all + survey.light() / survey.pixel_samples();
     let mut missing: Vec<Missing> = Vec::new();
     for (pattern, sources) in sums {
         for ((lamp, caster, seen), light) in sources {
@@ -152,6 +155,14 @@ fn told(
     missing
 }
 
+/// At most so many pixels of a window, spread evenly.
+fn some_pixels(window: Crop, most: u64) -> impl Iterator<Item = [u32; 2]> {
+    let count = |step: u32| u64::from(window.width.div_ceil(step)) * u64::from(window.height.div_ceil(step));
+    let step = (1..).find(|step| count(*step) <= most).unwrap_or(u32::MAX) as usize;
+    let columns = move || (window.x..window.x + window.width).step_by(step);
+    (window.y..window.y + window.height).step_by(step).flat_map(move |y| columns().map(move |x| [x, y]))
+}
+
 fn cell(at: Vec3, near: f32) -> [i32; 3] {
     [at.x, at.y, at.z].map(|c| (c / near).floor() as i32)
 }
@@ -159,14 +170,17 @@ fn cell(at: Vec3, near: f32) -> [i32; 3] {
 /// Where a light path of a lamp without extent arrives over S first, and never over two D in a row.
 fn arrivals(scene: &Scene, paths: &Subpaths<'_>, photons: &mut Vec<Photon>) {
     let Some(emission) = &paths.emission else { return };
-    if LampEnd::of(scene, &emission.point) != LampEnd::Dirac {
-        return;
-    }
+    // Next-event estimation finds lamps without extent from the first D, and nothing finds what shines along normals.
+    let sought = match LampEnd::of(scene, &emission.point) {
+        LampEnd::Dirac => true,
+        LampEnd::Collimated => false,
+        LampEnd::Surface | LampEnd::Environment => return,
+    };
     for (i, v) in paths.light.iter().enumerate() {
         let before = i.checked_sub(1).map(|j| paths.light[j].is_connectible());
         if v.is_connectible() {
             // Next-event estimation or inner connections reach whatever follows.
-            if before != Some(false) {
+            if before.unwrap_or(sought) {
                 return;
             }
             photons.push(Photon {
@@ -211,6 +225,24 @@ fn gather_at(
             let light = f64::from(Wavelengths::Rgb.rgb(value).luminance());
             let source = sums.entry(class.pattern()).or_default();
             *source.entry((p.lamp, p.caster, seen)).or_default() += light;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_large_windows_some_pixels_are_taken() {
+        let window = |width, height| Crop { x: 5, y: 7, width, height };
+        let all: Vec<_> = some_pixels(window(3, 2), 6).collect();
+        assert_eq!(all, [[5, 7], [6, 7], [7, 7], [5, 8], [6, 8], [7, 8]]);
+        for (width, height) in [(96, 64), (1920, 1080), (65536, 1), (1, 65536), (65536, 4096)] {
+            let count = some_pixels(window(width, height), MOST_PIXELS).count() as u64;
+            assert!(
+                count <= MOST_PIXELS && count * 4 >= (u64::from(width) * u64::from(height)).min(MOST_PIXELS)
+            );
         }
     }
 }

@@ -1,22 +1,31 @@
 //! Why a part of a picture is black or noisy.
 
+mod advice;
 mod missing;
+mod noise;
 mod survey;
 mod words;
 
+use std::collections::BTreeSet;
+
+use caustica_math::MemoryLimit;
 use caustica_render::Control;
 use caustica_scene::Scene;
 use caustica_scene::description::Crop;
 use caustica_transport::Settings;
 use serde::Serialize;
 
+use crate::class::PathClass;
 use crate::estimator::Estimator;
 use crate::grid::Grid;
-use crate::outcome::{PatternShare, by_pattern};
+use crate::memory;
+use crate::outcome::{PatternShare, by_pattern, lamp_name};
 use crate::verify::VerifyError;
 
 pub use missing::Missing;
-use survey::{Carried, Survey};
+pub(crate) use noise::MOST_PATTERNS;
+use noise::Pattern;
+use survey::Survey;
 
 /// What is to be explained.
 #[derive(Clone, Debug)]
@@ -42,7 +51,7 @@ pub struct Row {
     pub lamp: &'static str,
     /// Its share of the light that bdpt finds.
     pub light: f64,
-    /// Its share of the noise (variance) of bdpt.
+    /// Its share of the noise of bdpt: of the sum of the variances of all patterns.
     pub noise: f64,
     /// The standard deviation of one sample a pixel, over the mean of all light.
     pub per_sample: f64,
@@ -57,8 +66,12 @@ pub struct Row {
 pub struct Explanation {
     /// The part of the picture: x, y, width, height.
     pub region: [u32; 4],
+    /// Samples per pixel that were looked at: as many as were asked for, or some more.
+    pub samples: u32,
     /// Mean luminance that bdpt finds there.
     pub mean: f64,
+    /// The standard deviation of one sample a pixel of all light, over its mean.
+    pub per_sample: f64,
     /// Patterns of paths by their light.
     pub rows: Vec<Row>,
     /// Light that no strategy reaches, estimated crudely.
@@ -73,7 +86,7 @@ const INTEGRATORS: [&str; 5] = ["bdpt", "path", "path_ems", "naive", "light"];
 /// Looks into the paths of a part of a picture.
 ///
 /// # Errors
-/// Threads that do not start, and a control that stops it.
+/// A region that needs more memory than there is, threads that do not start, and a control that stops it.
 pub fn explain(
     scene: &Scene,
     question: &Question<'_>,
@@ -81,15 +94,21 @@ pub fn explain(
     mut tell: impl FnMut(f64),
 ) -> Result<Explanation, VerifyError> {
     let window = question.region.unwrap_or(scene.film.window());
+    memory::for_explaining(window, question.threads).check(MemoryLimit::Machine)?;
     let region = Grid { window, block: 1 };
     let survey = Survey::run(scene, (question, region), control, |f| tell(0.8 * f))?;
     let missing = missing::estimate(scene, (question, region), &survey, control)?;
     tell(1.0);
     let rows = rows(scene, question, &survey);
-    let sentences = words::sentences(scene, question, (&survey, &rows, &missing));
+    let mean = survey.light() / survey.pixel_samples();
+    let variance = survey.noise.whole(survey.passes_of_a_part()) / survey.pixels as f64;
+    let per_sample = if mean > 0.0 { variance.sqrt() / mean } else { 0.0 };
+    let sentences = words::sentences(scene, question, (&survey, &rows, &missing), per_sample);
     Ok(Explanation {
         region: [window.x, window.y, window.width, window.height],
-        mean: survey.light() / survey.pixel_samples(),
+        samples: survey.passes,
+        mean,
+        per_sample,
         rows,
         missing,
         sentences,
@@ -100,17 +119,18 @@ pub fn explain(
 fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
     let estimators = Estimator::all(&question.settings);
     let camera = scene.camera.joins();
-    let (light, squares) = (survey.light(), survey.squares());
+    let light = survey.light();
     let mean = light / survey.pixel_samples();
-    let shares = by_pattern(survey.classes.iter().map(|(class, c)| (class, c.tally.light)));
+    let variance = |p: &Pattern| survey.noise.variance(p, survey.passes_of_a_part()) / survey.pixels as f64;
+    let patterns: BTreeSet<Pattern> = survey.classes.keys().map(|c| (c.lamp(), c.pattern())).collect();
+    let all: f64 = patterns.iter().map(variance).sum();
+    let shares = by_pattern(survey.classes.iter().map(|(class, c)| (class, c.light)));
     let row = |PatternShare { pattern, lamp, share }: PatternShare| {
-        let classes: Vec<_> = survey
-            .classes
-            .iter()
-            .filter(|(c, _)| c.pattern() == pattern && crate::outcome::lamp_name(c.lamp()) == lamp)
-            .collect();
-        let own: f64 = classes.iter().map(|(_, c): &(_, &Carried)| c.tally.squares).sum();
-        let reached = |e: &Estimator| classes.iter().all(|(c, _)| e.reaches(c, camera));
+        let is_own = |p: &Pattern| p.1 == pattern && lamp_name(p.0) == lamp;
+        let classes: Vec<&PathClass> =
+            survey.classes.keys().filter(|c| is_own(&(c.lamp(), c.pattern()))).collect();
+        let own: f64 = patterns.iter().filter(|p| is_own(p)).map(variance).sum();
+        let reached = |e: &Estimator| classes.iter().all(|c| e.reaches(c, camera));
         let misses = |name: &str| estimators.iter().find(|e| e.name == name).is_some_and(|e| !reached(e));
         let sets = [
             ("s=0", "bdpt, s=0"),
@@ -119,13 +139,13 @@ fn rows(scene: &Scene, question: &Question<'_>, survey: &Survey) -> Vec<Row> {
             ("inner", "bdpt, s>=2&t>=2"),
         ];
         let makes = |(_, name): &(&str, &str)| {
-            let makes = |e: &Estimator| classes.iter().any(|(c, _)| e.reaches(c, camera));
+            let makes = |e: &Estimator| classes.iter().any(|c| e.reaches(c, camera));
             estimators.iter().find(|e| e.name == *name).is_some_and(makes)
         };
         Row {
             light: if light > 0.0 { share / light } else { 0.0 },
-            noise: if squares > 0.0 { own / squares } else { 0.0 },
-            per_sample: if mean > 0.0 { (own / survey.pixel_samples()).sqrt() / mean } else { 0.0 },
+            noise: if all > 0.0 { own / all } else { 0.0 },
+            per_sample: if mean > 0.0 { own.sqrt() / mean } else { 0.0 },
             strategies: sets.iter().filter(|s| makes(s)).map(|s| s.0).collect(),
             missed_by: INTEGRATORS.into_iter().filter(|name| misses(name)).collect(),
             pattern,

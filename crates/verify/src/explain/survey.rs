@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use caustica_math::stream::mix64;
 use caustica_math::{Rgb, Vec2, Wavelengths};
 use caustica_render::{Control, available_threads};
 use caustica_scene::Scene;
@@ -9,20 +10,23 @@ use caustica_scene::description::Integrator;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink, StrategySet, Subpaths};
 
 use super::Question;
-use crate::class::PathClass;
+use super::noise::{Layers, Noise};
+use crate::class::{PathClass, surface_vertices};
 use crate::grid::Grid;
 use crate::jobs;
-use crate::tally::ClassTally;
 use crate::verify::VerifyError;
 
 /// What a class carries, and by whom.
 #[derive(Clone, Debug, Default)]
 pub struct Carried {
-    pub tally: ClassTally,
+    /// Sum of luminances.
+    pub light: f64,
     /// Light by lamp.
     pub lamps: BTreeMap<u32, f64>,
-    /// Light by the first mirror or glass after the lamp.
+    /// Light by the first mirror or glass that it meets before a D.
     pub casters: BTreeMap<u32, f64>,
+    /// Light by the mirror or glass that it is seen in.
+    pub seen_in: BTreeMap<u32, f64>,
 }
 
 /// What eye rays through the region meet first.
@@ -39,6 +43,8 @@ pub struct Views {
     pub behind: u64,
     /// Met a transparent surface from behind: from inside the medium.
     pub inside_glass: u64,
+    /// Met mirrors or glass, and no surface that scatters.
+    pub mirrors: u64,
 }
 
 /// A survey of a region.
@@ -50,6 +56,8 @@ pub struct Survey {
     pub emitted: BTreeMap<u32, [u64; 2]>,
     /// Light that paths longer than the limit would carry, by their edges.
     pub longer: BTreeMap<u32, f64>,
+    pub noise: Noise,
+    /// All passes.
     pub passes: u32,
     pub pixels: u64,
 }
@@ -63,12 +71,12 @@ pub const PARTS: u32 = 16;
 impl Survey {
     /// All light that was found, in sums of luminances.
     pub fn light(&self) -> f64 {
-        self.classes.values().map(|c| c.tally.light).fold(0.0, |a, b| a + b)
+        self.classes.values().map(|c| c.light).fold(0.0, |a, b| a + b)
     }
 
-    /// The sum of the squares of all contributions.
-    pub fn squares(&self) -> f64 {
-        self.classes.values().map(|c| c.tally.squares).fold(0.0, |a, b| a + b)
+    /// Passes of each independent part.
+    pub fn passes_of_a_part(&self) -> u32 {
+        self.passes / PARTS
     }
 
     /// Samples times pixels of the region.
@@ -91,32 +99,40 @@ impl Survey {
             max_depth: limit.map(|d| d.saturating_add(BEYOND)),
             ..question.settings.clone()
         };
-        let kernel = Kernel::new(scene, settings.clone());
-        // What surfaces do is to be seen without roulette.
-        let looking =
-            Kernel::new(scene, Settings { roulette_start: Some(u32::MAX), max_depth: Some(3), ..settings });
         let work = |part: usize| {
+            let settings = Settings { seed: mix64(settings.seed ^ mix64(part as u64)), ..settings.clone() };
+            let kernel = Kernel::new(scene, settings.clone());
+            // What surfaces do is to be seen without roulette.
+            let looking = Settings { roulette_start: Some(u32::MAX), max_depth: Some(3), ..settings };
+            let looking = Kernel::new(scene, looking);
             let mut scratch = Scratch::default();
-            let survey = Self::default();
-            let mut listener = Listener { kernel: &kernel, region, limit, survey, pixel: [0; 2] };
+            let mut listener = Listener {
+                kernel: &kernel,
+                region,
+                limit,
+                survey: Self::default(),
+                layers: Layers::default(),
+                pixel: [0; 2],
+                places: Vec::new(),
+            };
             for pass in 0..passes {
-                let sample = part as u32 * passes + pass;
                 for pixel in Grid::new(scene, 1).each_pixel() {
                     listener.pixel = pixel;
-                    kernel.sample(pixel, sample, &mut scratch, &mut listener);
+                    kernel.sample(pixel, pass, &mut scratch, &mut listener);
                     if pass == 0 {
-                        let paths = looking.subpaths(pixel, sample, &mut scratch);
+                        let paths = looking.subpaths(pixel, pass, &mut scratch);
                         listener.survey.look(scene, &paths, region.pixel(pixel).is_some());
                     }
                 }
             }
-            listener.survey
+            (listener.survey, listener.layers)
         };
         let threads = question.threads.unwrap_or_else(available_threads);
         let mut all = Self { passes: passes * PARTS, pixels: region.pixels() as u64, ..Self::default() };
         let mut done = 0;
-        let finished = jobs::run((PARTS as usize, threads), control, work, |part| {
+        let finished = jobs::run((PARTS as usize, threads), control, work, |(part, layers)| {
             all.merge(&part);
+            all.noise.add(layers);
             done += 1;
             progress(f64::from(done) / f64::from(PARTS));
         })?;
@@ -126,15 +142,16 @@ impl Survey {
     fn merge(&mut self, other: &Self) {
         for (class, theirs) in &other.classes {
             let own = self.classes.entry(*class).or_default();
-            own.tally.merge(&theirs.tally);
-            theirs.lamps.iter().for_each(|(k, v)| *own.lamps.entry(*k).or_default() += v);
-            theirs.casters.iter().for_each(|(k, v)| *own.casters.entry(*k).or_default() += v);
+            own.light += theirs.light;
+            add_up(&mut own.lamps, &theirs.lamps);
+            add_up(&mut own.casters, &theirs.casters);
+            add_up(&mut own.seen_in, &theirs.seen_in);
         }
         for (lamp, [began, met]) in &other.emitted {
             let own = self.emitted.entry(*lamp).or_default();
             *own = [own[0] + began, own[1] + met];
         }
-        other.longer.iter().for_each(|(k, v)| *self.longer.entry(*k).or_default() += v);
+        add_up(&mut self.longer, &other.longer);
         let (a, b) = (&mut self.views, &other.views);
         a.rays += b.rays;
         a.empty += b.empty;
@@ -142,6 +159,7 @@ impl Survey {
         a.dark_lamp += b.dark_lamp;
         a.behind += b.behind;
         a.inside_glass += b.inside_glass;
+        a.mirrors += b.mirrors;
     }
 
     /// Notes what the subpaths of a sample meet.
@@ -168,7 +186,13 @@ impl Survey {
         let ends = paths.eye.len() == 1 && paths.escape.is_none();
         views.dark_lamp += u64::from(lamp && !shines && ends);
         views.black += u64::from(ends && !lamp);
+        views.mirrors += u64::from(!paths.eye.iter().any(|v| v.is_connectible()));
     }
+}
+
+/// Adds up what is known by key.
+pub fn add_up(sums: &mut BTreeMap<u32, f64>, others: &BTreeMap<u32, f64>) {
+    others.iter().for_each(|(key, value)| *sums.entry(*key).or_default() += value);
 }
 
 /// Sorts what `bdpt` finds in the region.
@@ -178,19 +202,25 @@ struct Listener<'k, 's> {
     /// The most edges that the picture's paths have.
     limit: Option<u32>,
     survey: Survey,
+    layers: Layers,
     /// The pixel whose sample is looked at.
     pixel: [u32; 2],
+    /// Pixels of the region that get a contribution, with the share of each; used again.
+    places: Vec<(usize, f32)>,
 }
 
 impl Listener<'_, '_> {
-    /// How much of a contribution the region gets.
-    fn share(&self, c: &Contribution<'_>) -> f32 {
-        if c.strategy.t != 1 {
-            return if self.region.pixel(self.pixel).is_some() { c.filter_weight } else { 0.0 };
+    /// Finds the pixels of the region that get a contribution.
+    fn place(&mut self, c: &Contribution<'_>) {
+        let places = &mut self.places;
+        places.clear();
+        if c.strategy.t == 1 {
+            let camera = &self.kernel.scene().camera;
+            self.region
+                .each_splatted((camera, self.kernel.filter()), c.film, |i, value| places.push((i, value)));
+        } else {
+            places.extend(self.region.pixel(self.pixel).map(|i| (i, c.filter_weight)));
         }
-        let (mut share, camera) = (0.0, &self.kernel.scene().camera);
-        self.region.each_splatted((camera, self.kernel.filter()), c.film, |_, value| share += value);
-        share
     }
 }
 
@@ -202,9 +232,10 @@ impl Sink for Listener<'_, '_> {
     fn splat(&mut self, _: Vec2, _: Rgb) {}
 
     fn contribution(&mut self, c: &Contribution<'_>) {
-        let share = self.share(c);
-        let luminance = f64::from(self.kernel.rgb(c.unweighted * (c.weight * share)).luminance());
-        if !luminance.is_finite() || share == 0.0 {
+        self.place(c);
+        let whole = self.kernel.rgb(c.unweighted * c.weight).luminance();
+        let luminance = f64::from(whole) * self.places.iter().map(|p| f64::from(p.1)).sum::<f64>();
+        if !luminance.is_finite() || self.places.is_empty() {
             return;
         }
         let class = PathClass::of(self.kernel.scene(), c);
@@ -212,13 +243,49 @@ impl Sink for Listener<'_, '_> {
             *self.survey.longer.entry(class.edges()).or_default() += luminance;
             return;
         }
+        let layer = self.layers.of(&class, self.region.pixels());
+        self.places.iter().for_each(|(i, share)| layer[*i] += whole * share);
         let carried = self.survey.classes.entry(class).or_default();
-        carried.tally.add(luminance);
+        carried.light += luminance;
         *carried.lamps.entry(c.path.lamp.light).or_default() += luminance;
-        let vertices = c.path.light.iter().chain(c.path.eye.iter().rev());
-        let caster = vertices.filter(|v| !v.is_connectible()).map(|v| v.point.shape).next();
-        if let Some(shape) = caster {
-            *carried.casters.entry(shape).or_default() += luminance;
+        let vertices = surface_vertices(self.kernel.scene(), c);
+        let (caster, seen_in) = mirrors(vertices.map(|v| (v.is_connectible(), v.point.shape)));
+        for (sums, shape) in [(&mut carried.casters, caster), (&mut carried.seen_in, seen_in)] {
+            if let Some(shape) = shape {
+                *sums.entry(shape).or_default() += luminance;
+            }
         }
+    }
+}
+
+/// The first S of a path from the lamp on that is followed by a D, and the last one if no D follows: what casts its
+/// light, and what it is seen in. Vertices are D (true) or S, with their shapes.
+fn mirrors(vertices: impl Iterator<Item = (bool, u32)>) -> (Option<u32>, Option<u32>) {
+    let (mut first, mut caster, mut last) = (None, None, None);
+    for (diffuse, shape) in vertices {
+        if diffuse {
+            caster = caster.or(first);
+            last = None;
+        } else {
+            first = first.or(Some(shape));
+            last = Some(shape);
+        }
+    }
+    (caster, last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mirrors;
+
+    #[test]
+    fn mirrors_stand_before_or_behind_what_scatters() {
+        let of = |text: &str| mirrors(text.chars().zip(0..).map(|(c, i)| (c == 'D', i)));
+        assert_eq!(of("D"), (None, None));
+        assert_eq!(of("SSD"), (Some(0), None));
+        assert_eq!(of("DSS"), (None, Some(2)));
+        assert_eq!(of("SS"), (None, Some(1)));
+        assert_eq!(of("SDSDDS"), (Some(0), Some(5)));
+        assert_eq!(of("DSD"), (Some(1), None));
     }
 }

@@ -7,9 +7,7 @@ use caustica_scene::light::Light;
 
 use super::missing::Missing;
 use super::survey::Survey;
-use super::{Question, Row};
-use crate::class::LampEnd;
-use crate::outcome::lamp_name;
+use super::{Question, Row, advice};
 
 /// What is called a lamp in a sentence.
 pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
@@ -21,6 +19,11 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
         }
         Light::Point { position: p, .. } => format!("the point light at ({}, {}, {})", p.x, p.y, p.z),
         Light::Spot(s) => format!("the spot at ({}, {}, {})", s.position.x, s.position.y, s.position.z),
+        Light::Projector(p) => {
+            let p = p.position();
+            format!("the projector at ({}, {}, {})", p.x, p.y, p.z)
+        }
+        Light::Collimated(_) => "a lamp that shines along its normals".to_owned(),
         Light::Directional(_) => "the directional light".to_owned(),
         Light::Environment(_) => "the environment".to_owned(),
     }
@@ -29,12 +32,7 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
 /// What is called a shape in a sentence, with its material.
 pub fn shape_words(scene: &Scene, names: &[String], shape: u32) -> String {
     let name = names.get(shape as usize).map_or("?", String::as_str);
-    let flat = &scene.surfaces().shapes[shape as usize];
-    let primitive = flat.first_primitive;
-    let point = match scene.surfaces().sphere(primitive) {
-        Some(_) => scene.surfaces().sphere_point(primitive, caustica_math::Vec3::X),
-        None => scene.surfaces().triangle_point(primitive, 0.3, 0.3),
-    };
+    let point = scene.surfaces().some_point(shape);
     // Of a mixture one part, as good as any.
     let kind = match scene.placed(&point, point.normal, 0.0, caustica_math::Wavelengths::Rgb).bsdf {
         Bsdf::Dielectric(_) => "smooth glass",
@@ -45,15 +43,17 @@ pub fn shape_words(scene: &Scene, names: &[String], shape: u32) -> String {
     format!("the {kind} `{name}`")
 }
 
-fn percent(share: f64) -> String {
-    format!("{:.0} %", (100.0 * share).max(1.0))
+/// In whole percents.
+pub fn percent(share: f64) -> String {
+    if share < 0.005 { "less than 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// All that is to be said.
+/// All that is to be said. The last figure is the standard deviation of one sample a pixel over the mean.
 pub fn sentences(
     scene: &Scene,
     question: &Question<'_>,
     (survey, rows, missing): (&Survey, &[Row], &[Missing]),
+    per_sample: f64,
 ) -> Vec<String> {
     let mut said = Vec::new();
     if scene.lamps().are_black() {
@@ -63,20 +63,17 @@ pub fn sentences(
         ];
     }
     let place = if question.region.is_some() { "region" } else { "picture" };
-    views(survey, place, &mut said);
+    views(scene, survey, (place, missing.is_empty()), &mut said);
     for (lamp, [began, met]) in &survey.emitted {
-        if *began >= 32 && *met == 0 {
-            let lamp = lamp_words(scene, question.names, *lamp);
-            said.push(format!(
-                "No light path from {lamp} meets any surface: it faces away from everything. A lamp emits on the side \
-                 of its normal: reverse its triangles, or turn it."
-            ));
+        let found = survey.classes.values().any(|c| c.lamps.contains_key(lamp));
+        if *began >= 256 && *met == 0 && !found {
+            said.push(shines_on_nothing(scene, question.names, *lamp));
         }
     }
     depth(question, survey, place, &mut said);
     missing.iter().for_each(|m| said.push(missing_sentence(m, place)));
     reach(question, rows, place, &mut said);
-    noise(scene, question, (survey, rows), &mut said);
+    advice::told(scene, question.names, (survey, rows), per_sample, &mut said);
     if rows.is_empty() && said.is_empty() {
         said.push(format!(
             "No strategy found any light in this {place}, and nothing was found that could be missing: no lamp's light \
@@ -86,11 +83,24 @@ pub fn sentences(
     said
 }
 
-/// What eye rays meet.
-fn views(survey: &Survey, place: &str, said: &mut Vec<String>) {
+fn shines_on_nothing(scene: &Scene, names: &[String], lamp: u32) -> String {
+    let why = match scene.lamps().get(lamp) {
+        Light::Area(_) => {
+            "it faces away from everything. A lamp emits on the side of its normal: reverse its triangles, or turn it"
+        }
+        Light::Spot(_) | Light::Projector(_) | Light::Collimated(_) => {
+            "it points away from everything: turn it"
+        }
+        Light::Directional(_) => "it shines past everything: check its direction",
+        Light::Point { .. } | Light::Environment(_) => "there is nothing that it could shine on",
+    };
+    format!("No light path from {} meets any surface: {why}.", lamp_words(scene, names, lamp))
+}
+
+/// What eye rays meet. The last argument is whether no light is known to be missing.
+fn views(scene: &Scene, survey: &Survey, (place, complete): (&str, bool), said: &mut Vec<String>) {
     let v = &survey.views;
     let most = |n: u64| v.rays > 0 && n as f64 >= 0.9 * v.rays as f64;
-    let dark = survey.light() == 0.0;
     if most(v.behind) {
         said.push(
             "Nearly all rays from the camera meet the back of a surface: the camera is inside an object, or the \
@@ -98,9 +108,11 @@ fn views(survey: &Survey, place: &str, said: &mut Vec<String>) {
                 .into(),
         );
     } else if most(v.inside_glass) {
-        said.push("The camera is inside a transparent object: all that it sees is refracted.".into());
+        said.push(
+            "The camera is inside a transparent object: all that it sees is seen through its surface.".into(),
+        );
     }
-    if !dark {
+    if survey.light() > 0.0 {
         return;
     }
     if most(v.empty) {
@@ -110,6 +122,13 @@ fn views(survey: &Survey, place: &str, said: &mut Vec<String>) {
         said.push(format!(
             "This {place} shows the dark side of a lamp: a lamp emits on the side of its normal."
         ));
+    } else if v.mirrors > 0 && most(v.mirrors + v.empty) && complete {
+        let why = if scene.lamps().iter().all(Light::is_delta) {
+            "lamps without extent are not seen, neither directly nor in mirrors. Give the lamp a size"
+        } else {
+            "no lamp is to be seen in them"
+        };
+        said.push(format!("This {place} shows mirrors or glass, and no surface that scatters light: {why}."));
     } else if most(v.black) && !most(v.behind) {
         said.push(format!(
             "This {place} shows surfaces that scatter nothing towards the camera: black ones, or the back of \
@@ -127,18 +146,19 @@ fn depth(question: &Question<'_>, survey: &Survey, place: &str, said: &mut Vec<S
     };
     if longer > 0.05 * all {
         said.push(format!(
-            "At least {} of the light of this {place} comes by paths longer than the {limit} edges that are allowed \
-             (the shortest of them have {first}): raise the depth (`--max-depth`).",
-            percent(longer / all)
+            "At least {} of the light of this {place} comes by paths longer than the {limit} {} allowed (the \
+             shortest of them have {first}): raise the depth (`--max-depth`).",
+            percent(longer / all),
+            if limit == 1 { "edge that is" } else { "edges that are" },
         ));
     }
 }
 
 fn missing_sentence(m: &Missing, place: &str) -> String {
     format!(
-        "About {} of the light of this {place} is missing: {} from {} over {}, seen in {}. No strategy reaches it, because \
-         light paths and eye paths can only be joined at surfaces that are no mirrors. Give the lamp a size, or one of the \
-         surfaces some roughness.",
+        "About {} of the light of this {place} is missing: {} from {} over {}, seen in {}. No strategy reaches it: a lamp \
+         without extent is not hit by chance, and light paths and eye paths cannot be joined on mirrors or glass. Give the \
+         lamp a size, or one of the surfaces some roughness.",
         percent(m.share),
         m.pattern,
         m.lamp,
@@ -168,49 +188,4 @@ fn reach(question: &Question<'_>, rows: &[Row], place: &str, said: &mut Vec<Stri
             most.lamp
         ));
     }
-}
-
-/// Which paths are noisy, and what helps.
-fn noise(scene: &Scene, question: &Question<'_>, (survey, rows): (&Survey, &[Row]), said: &mut Vec<String>) {
-    let Some(worst) = rows.iter().max_by(|a, b| a.noise.total_cmp(&b.noise)) else { return };
-    let of = |r: &Row| {
-        let mut lamps = std::collections::BTreeMap::<u32, f64>::new();
-        let mut casters = std::collections::BTreeMap::<u32, f64>::new();
-        let own =
-            survey.classes.iter().filter(|(c, _)| c.pattern() == r.pattern && lamp_name(c.lamp()) == r.lamp);
-        for (_, carried) in own {
-            carried.lamps.iter().for_each(|(k, v)| *lamps.entry(*k).or_default() += v);
-            carried.casters.iter().for_each(|(k, v)| *casters.entry(*k).or_default() += v);
-        }
-        let most = |m: std::collections::BTreeMap<u32, f64>| {
-            m.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|m| m.0)
-        };
-        let lamp = most(lamps).map_or_else(|| r.lamp.to_owned(), |l| lamp_words(scene, question.names, l));
-        let over = most(casters).map(|s| format!(" over {}", shape_words(scene, question.names, s)));
-        format!("{}{}", lamp, over.unwrap_or_default())
-    };
-    let strategies = worst.strategies.join(", ");
-    said.push(format!(
-        "Most of bdpt's noise ({}) is of {} from {}, which carries {} of the light. It is found by {strategies}.",
-        percent(worst.noise),
-        worst.pattern,
-        of(worst),
-        percent(worst.light),
-    ));
-    let advice = match worst.strategies.as_slice() {
-        ["s=0"] => {
-            "Only eye paths that hit the lamp by chance find it: a larger lamp of the same power, or a rougher surface in \
-             between, makes that likelier; else only samples help."
-        }
-        ["t=1"] => {
-            "Only light paths find it: keep the light image, and give it samples; `path` would not find it at all."
-        }
-        ["inner"] => "Only the joining of both paths' middles finds it: samples help, or a lamp with a size.",
-        ["s=1"] if lamp_name(LampEnd::Dirac) == worst.lamp => {
-            "Only next-event estimation finds it: a lamp with a size gives the other strategies a way."
-        }
-        _ if worst.per_sample < 3.0 => "That is little noise: a few hundred samples make it clean.",
-        _ => "Several strategies share it: samples help, and so does a larger lamp.",
-    };
-    said.push(advice.to_owned());
 }

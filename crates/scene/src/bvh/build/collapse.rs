@@ -14,6 +14,8 @@ use super::reference::Reference;
 const NODE_COST: f32 = 1.0;
 const BLOCK_COST: f32 = 0.25;
 const SPHERE_COST: f32 = 0.15;
+/// Of an instance: of the way into it, and some nodes there.
+const INSTANCE_COST: f32 = 4.0;
 /// Most blocks or spheres of a leaf.
 const LEAF_BLOCKS: usize = 4;
 const LEAF_SPHERES: usize = 4;
@@ -29,13 +31,16 @@ pub(super) struct Tree {
     bounds: Bounds,
     /// The first of its references, if it has no children.
     first: u32,
-    /// Triangles and spheres, or [`u16::MAX`] of them if there are more.
+    /// Triangles and spheres, or [`u16::MAX`] of them if there are more; or [`INSTANCE`].
     counts: [u16; 2],
     /// How many children the left part gets where that many are allowed in all: 1 to 8. For one child, whether it
     /// is no leaf.
     lefts: [u8; WIDTH],
     children: Option<Box<[Tree; 2]>>,
 }
+
+/// The counts of one instance, of which every leaf has a single one.
+pub(super) const INSTANCE: [usize; 2] = [0, 1 << 15];
 
 /// `lefts` says that fewer children are as good; or that one is a leaf.
 const FEWER: u8 = 0;
@@ -100,6 +105,9 @@ impl Tree {
     /// The cost as a leaf; infinite if it cannot be one.
     fn leaf_cost(&self) -> f32 {
         let [triangles, spheres] = self.counts.map(usize::from);
+        if [triangles, spheres] == INSTANCE && self.children.is_none() {
+            return self.bounds.half_area() * INSTANCE_COST;
+        }
         let blocks = triangles.div_ceil(BLOCK);
         if blocks > LEAF_BLOCKS || spheres > LEAF_SPHERES || (blocks > 0 && spheres > 0) {
             return f32::INFINITY;
@@ -113,7 +121,10 @@ impl Tree {
             children.iter().for_each(|c| c.gather(ids, out));
             return;
         }
-        let count = u32::from(self.counts[0]) + u32::from(self.counts[1]);
+        let count = match self.counts.map(usize::from) {
+            INSTANCE => 1,
+            [triangles, spheres] => (triangles + spheres) as u32,
+        };
         (self.first..self.first + count).for_each(|i| out.add(ids(i)));
     }
 
@@ -187,6 +198,9 @@ impl<'a> Flat<'a> {
         let mut leaf = Leaf::new();
         tree.gather(&|i| self.references[i as usize].id(), &mut leaf);
         let ids = &leaf.ids[..leaf.count];
+        if let Some(instance) = ids.first().and_then(|id| self.primitives.instance(*id)) {
+            return Child::instance(instance);
+        }
         if tree.counts[1] > 0 {
             let start = self.spheres.len();
             let first_sphere = self.primitives.triangles.len();

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::pages::Pages;
 use super::sphere::SphereData;
 use super::triangle::TriangleBlock;
-use super::{Bounds, Bvh, Child, Kernels, TreeQuality};
+use super::{Bounds, Bvh, Child, Instances, Kernels, TreeQuality};
 use collapse::{Flat, NO_TRIANGLE};
 use reference::{Extents, Reference};
 use spatial::Spatial;
@@ -31,6 +31,8 @@ pub(super) struct Primitives<'a> {
     pub positions: &'a [Vec3],
     pub triangles: &'a [[u32; 3]],
     pub spheres: &'a [SphereData],
+    /// The boxes around instances.
+    pub instances: &'a [Bounds],
 }
 
 impl Primitives<'_> {
@@ -38,8 +40,14 @@ impl Primitives<'_> {
         self.triangles[id as usize].map(|v| self.positions[v as usize])
     }
 
-    fn is_sphere(&self, id: u32) -> bool {
-        id as usize >= self.triangles.len()
+    fn is_triangle(&self, id: u32) -> bool {
+        (id as usize) < self.triangles.len()
+    }
+
+    /// The number of the instance, if it is one.
+    fn instance(&self, id: u32) -> Option<usize> {
+        let index = (id as usize).checked_sub(self.triangles.len() + self.spheres.len())?;
+        (index < self.instances.len()).then_some(index)
     }
 
     fn references(&self) -> Vec<Reference> {
@@ -48,8 +56,9 @@ impl Primitives<'_> {
             Reference::new(self.corners(id).into_iter().fold(Bounds::EMPTY, Bounds::with), id)
         };
         let mut references: Vec<_> = (0..self.triangles.len()).into_par_iter().map(triangle).collect();
+        let boxes = self.spheres.iter().map(SphereData::bounds).chain(self.instances.iter().copied());
         let ids = self.triangles.len() as u32..;
-        references.extend(self.spheres.iter().zip(ids).map(|(s, id)| Reference::new(s.bounds(), id)));
+        references.extend(boxes.zip(ids).map(|(bounds, id)| Reference::new(bounds, id)));
         references
     }
 }
@@ -63,6 +72,8 @@ pub(super) fn build(primitives: &Primitives<'_>, quality: TreeQuality) -> Bvh {
         nodes: Pages::zeroed(0),
         blocks: Pages::zeroed(0),
         spheres: Vec::new(),
+        instances: Instances::default(),
+        first_instance: (primitives.triangles.len() + primitives.spheres.len()) as u32,
         root: Child::NONE,
         bounds: extent.bounds(),
         kernels: Kernels::best(),

@@ -127,7 +127,7 @@ impl<'a> Spatial<'a> {
     }
 
     fn is_divisible(&self, r: &Reference) -> bool {
-        !self.primitives.is_sphere(r.id()) && is_divisible(&self.primitives.corners(r.id()))
+        self.primitives.is_triangle(r.id()) && is_divisible(&self.primitives.corners(r.id()))
     }
 
     fn partition(

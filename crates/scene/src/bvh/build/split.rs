@@ -4,7 +4,7 @@ use wide::f32x4;
 
 use super::super::Bounds;
 use super::Primitives;
-use super::collapse::{Costs, Tree};
+use super::collapse::{Costs, INSTANCE, Tree};
 use super::reference::{Extent, Extents, Reference};
 use super::spatial::{Spatial, share};
 
@@ -32,20 +32,28 @@ pub(super) struct Place {
 impl Splitter<'_> {
     /// The tree over the first `count` references, which are sorted into its order; the others are room for more.
     pub(super) fn split(&self, references: &mut [Reference], count: usize, place: Place) -> (Tree, Costs) {
-        let is_sphere = |r: &Reference| self.primitives.is_sphere(r.id());
+        let is_triangle = |r: &Reference| self.primitives.is_triangle(r.id());
+        let is_instance = |r: &Reference| self.primitives.instance(r.id()).is_some();
+        let number = |of: &dyn Fn(&Reference) -> bool, references: &[Reference]| {
+            references[..count].iter().filter(|r| of(r)).count()
+        };
         let extents = Extents::of(&references[..count]);
         let bounds = extents.boxes.bounds();
-        let spheres = if self.primitives.spheres.is_empty() {
-            0
-        } else {
-            references[..count].iter().filter(|r| is_sphere(r)).count()
-        };
-        let mixed = spheres != 0 && spheres != count;
-        if count <= LEAF_SIZE && !mixed {
-            return Tree::leaf(bounds, place.first, [count - spheres, spheres]);
+        let Primitives { spheres, instances, .. } = self.primitives;
+        let triangles =
+            if spheres.is_empty() && instances.is_empty() { count } else { number(&is_triangle, references) };
+        let instances = if instances.is_empty() { 0 } else { number(&is_instance, references) };
+        let spheres = count - triangles - instances;
+        let mixed = ![triangles, spheres, instances].contains(&count);
+        if instances == 1 && count == 1 {
+            return Tree::leaf(bounds, place.first, INSTANCE);
         }
-        let [left, right] = if count <= LEAF_SIZE {
-            sides(partition(&mut references[..count], |r| !is_sphere(r)), count)
+        if count <= LEAF_SIZE && !mixed && instances == 0 {
+            return Tree::leaf(bounds, place.first, [triangles, spheres]);
+        }
+        let [left, right] = if count <= LEAF_SIZE && mixed {
+            let first = |r: &Reference| if triangles > 0 { is_triangle(r) } else { !is_instance(r) };
+            sides(partition(&mut references[..count], first), count)
         } else if place.depth < SAH_DEPTH {
             self.sah(references, count, &extents).unwrap_or([count / 2, count - count / 2])
         } else {

@@ -1,0 +1,3 @@
+#![no_main]
+
+caustica_fuzz::target!("ply");
