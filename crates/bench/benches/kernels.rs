@@ -7,9 +7,11 @@ use std::hint::black_box;
 
 use caustica::description::{Filter, Integrator, MaterialKind, Technique};
 use caustica::film::{Film, FilmLayout, Window};
-use caustica::math::{PixelFilter, SampleId, SampleStream, Sampler, StreamId, Vec2, Wavelengths, warp};
+use caustica::math::{
+    PixelFilter, SampleId, SampleStream, Sampler, Spectrum, StreamId, Vec2, Wavelengths, warp,
+};
 use caustica::scene::bsdf::{
-    Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric, Walk,
+    Bsdf, Conductor, Dielectric, Diffuse, Facets, Microfacet, RoughConductor, RoughDielectric, Walk,
 };
 use caustica::scene::bvh::Bvh;
 use caustica::transport::{Kernel, Scratch, Sink};
@@ -80,8 +82,8 @@ fn numbers(c: &mut Criterion) {
 fn bsdfs() -> Vec<(&'static str, Bsdf)> {
     let w = Wavelengths::Rgb;
     let copper = match scenes::metal_kind(None) {
-        MaterialKind::Conductor { eta, k, reflectance } => {
-            Conductor { eta: w.spectrum(eta), k: w.spectrum(k), reflectance: w.spectrum(reflectance) }
+        MaterialKind::Conductor { eta, k, .. } => {
+            Conductor { eta: w.spectrum(eta), k: w.spectrum(k), reflectance: Spectrum::ONE }
         }
         _ => unreachable!("a smooth metal"),
     };
@@ -89,10 +91,13 @@ fn bsdfs() -> Vec<(&'static str, Bsdf)> {
     vec![
         ("diffuse", Bsdf::Diffuse(Diffuse { albedo: grey })),
         ("mirror", Bsdf::Mirror { reflectance: grey }),
-        ("dielectric", Bsdf::Dielectric(Dielectric { interior_ior: 1.5, exterior_ior: 1.0 })),
-        ("rough dielectric", Bsdf::RoughDielectric(RoughDielectric::new(0.3, 1.5, 1.0))),
+        ("dielectric", Bsdf::Dielectric(Dielectric::new(1.5, 1.0))),
+        (
+            "rough dielectric",
+            Bsdf::RoughDielectric(RoughDielectric::new(Facets::ggx(0.3), Dielectric::new(1.5, 1.0))),
+        ),
         ("conductor", Bsdf::Conductor(copper)),
-        ("rough conductor", Bsdf::RoughConductor(RoughConductor::new(copper, 0.2))),
+        ("rough conductor", Bsdf::RoughConductor(RoughConductor::new(copper, Facets::ggx(0.2)))),
         ("microfacet", Bsdf::Microfacet(Microfacet::new(grey, 0.2, 1.5, 1.0))),
     ]
 }

@@ -15,7 +15,7 @@ pub fn glass_ball(size: [u32; 2]) -> Description {
     [scene.film.width, scene.film.height] = size;
     scene.camera.kind = CameraKind::Perspective { fov: 34.0 };
     scene.camera.to_world = Transform::look_at([0.0, 2.6, -5.2], [-0.45, 0.45, 0.15], [0.0, 1.0, 0.0]);
-    let glass = scene.add_material(MaterialKind::Dielectric { interior_ior: 1.52, exterior_ior: 1.0 });
+    let glass = scene.add_material(MaterialKind::dielectric(1.52, 1.0));
     let clay = scene.add_material(MaterialKind::Diffuse { albedo: Rgb::new(0.56, 0.44, 0.36).into() });
     let black = scene.add_material(MaterialKind::Diffuse { albedo: Rgb::BLACK.into() });
     let ball = |x, y, z, radius| Geometry::Sphere { center: Vec3::new(x, y, z), radius };

@@ -5,7 +5,8 @@ mod common;
 use caustica_math::elementary::{atan2, tan};
 use caustica_math::{Filter, Rgb, Vec3};
 use caustica_scene::description::{
-    CameraKind, Crop, Geometry, Integrator, LightKind, MaterialKind, Technique, Texture,
+    CameraKind, Crop, Distribution, Geometry, Integrator, LightKind, MaterialKind, Principled,
+    PrincipledThin, Roughness, Scalar, Shadowing, Technique, Texture,
 };
 use caustica_scene::{Description, Scene};
 use common::{good, parse, refused, warned};
@@ -150,17 +151,18 @@ fn materials() {
     let grey = Rgb::splat(0.5);
     assert_eq!(material("<bsdf type='diffuse'/>"), MaterialKind::Diffuse { albedo: grey.into() });
     assert_eq!(material(""), MaterialKind::Diffuse { albedo: grey.into() });
-    let glass = MaterialKind::Dielectric { interior_ior: 1.5046, exterior_ior: 1.000_277 };
+    let glass = MaterialKind::dielectric(1.5046, 1.000_277);
     assert_eq!(material("<bsdf type='dielectric'/>"), glass);
     let named = "<bsdf type='dielectric'><string name='int_ior' value='Water'/><float name='ext_ior' value='1'/></bsdf>";
-    assert_eq!(material(named), MaterialKind::Dielectric { interior_ior: 1.333, exterior_ior: 1.0 });
+    assert_eq!(material(named), MaterialKind::dielectric(1.333, 1.0));
     let mirror = material("<bsdf type='conductor'/>");
     let MaterialKind::Conductor { eta, k, reflectance } = mirror else { panic!("{mirror:?}") };
-    assert_eq!((eta, k, reflectance), (Rgb::BLACK, Rgb::WHITE, Rgb::WHITE));
+    assert_eq!((eta, k, reflectance), (Rgb::BLACK, Rgb::WHITE, Rgb::WHITE.into()));
     let rough = "<bsdf type='roughconductor'><string name='material' value='Ni_palik'/><float name='alpha' value='.2'/>\
         <string name='distribution' value='ggx'/></bsdf>";
-    let MaterialKind::RoughConductor { alpha, eta, .. } = material(rough) else { panic!() };
-    assert!(alpha == 0.2 && eta.0[0] > 2.0);
+    let MaterialKind::RoughConductor { roughness, eta, .. } = material(rough) else { panic!() };
+    assert_eq!(roughness, Roughness { shadowing: Shadowing::Separable, ..Roughness::ggx(0.2) });
+    assert!(eta.0[0] > 2.0);
     let eta =
         "<bsdf type='conductor'><spectrum name='eta' value='0.789'/><rgb name='k' value='1 2 3'/></bsdf>";
     let MaterialKind::Conductor { eta, k, .. } = material(eta) else { panic!() };
@@ -168,20 +170,98 @@ fn materials() {
 }
 
 #[test]
+fn roughness_by_direction_and_texture() {
+    let rough = |inside: &str| {
+        let text = format!("<bsdf type='roughdielectric'>{inside}</bsdf>");
+        let MaterialKind::RoughDielectric { roughness, .. } = material(&text) else { panic!() };
+        roughness
+    };
+    let beckmann =
+        |alpha| Roughness { distribution: Distribution::Beckmann, shadowing: Shadowing::Separable, alpha };
+    assert_eq!(rough(""), beckmann([0.1.into(); 2]));
+    let both = "<float name='alpha_u' value='.2'/><float name='alpha_v' value='.4'/>";
+    assert_eq!(rough(both), beckmann([0.2.into(), 0.4.into()]));
+    let textured = rough("<texture name='alpha' type='checkerboard'/>");
+    assert!(matches!(textured.alpha, [Scalar::Texture(Texture::Checkerboard { .. }), Scalar::Texture(_)]));
+    let one = scene(
+        "<shape type='cube'>§<bsdf type='roughdielectric'><float name='alpha_u' value='.2'/></bsdf></shape>",
+    );
+    refused(&one, "both `alpha_u` and `alpha_v`");
+}
+
+#[test]
+fn factors_on_what_physics_says() {
+    let inside = "<rgb name='specular_reflectance' value='.1 .2 .3'/>\
+        <texture name='specular_transmittance' type='checkerboard'/>";
+    let glass = material(&format!("<bsdf type='dielectric'>{inside}</bsdf>"));
+    let MaterialKind::Dielectric { reflectance, transmittance, .. } = glass else { panic!() };
+    assert_eq!(reflectance, Rgb::new(0.1, 0.2, 0.3).into());
+    assert!(matches!(transmittance, Texture::Checkerboard { .. }));
+}
+
+#[test]
+fn plastics() {
+    let (interior_ior, exterior_ior) = (1.49, 1.000_277);
+    let (diffuse, reflectance) = (Rgb::splat(0.5).into(), Rgb::WHITE.into());
+    let smooth = MaterialKind::Plastic { interior_ior, exterior_ior, diffuse, reflectance, nonlinear: false };
+    assert_eq!(material("<bsdf type='plastic'/>"), smooth);
+    let inside = "<rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='int_ior' value='1.9'/>\
+        <boolean name='nonlinear' value='true'/><float name='alpha' value='.2'/>\
+        <string name='distribution' value='ggx'/>";
+    let rough = material(&format!("<bsdf type='roughplastic'>{inside}</bsdf>"));
+    let expected = MaterialKind::RoughPlastic {
+        distribution: Distribution::Ggx,
+        alpha: 0.2,
+        interior_ior: 1.9,
+        exterior_ior,
+        diffuse: Rgb::new(0.1, 0.2, 0.3).into(),
+        reflectance,
+        nonlinear: true,
+    };
+    assert_eq!(rough, expected);
+}
+
+#[test]
+fn principled_materials() {
+    assert_eq!(material("<bsdf type='principled'/>"), MaterialKind::Principled(Principled::default()));
+    let inside = "<float name='roughness' value='.2'/><float name='eta' value='1.4'/>\
+        <texture name='metallic' type='checkerboard'/><float name='clearcoat_sampling_rate' value='2'/>";
+    let MaterialKind::Principled(p) = material(&format!("<bsdf type='principled'>{inside}</bsdf>")) else {
+        panic!()
+    };
+    assert_eq!((p.roughness, p.eta, p.sheen), (0.2.into(), 1.4, 0.0.into()));
+    assert!(matches!(p.metallic, Scalar::Texture(Texture::Checkerboard { .. })));
+    let glossy = "<bsdf type='principled'><float name='specular' value='.7'/></bsdf>";
+    let MaterialKind::Principled(p) = material(glossy) else { panic!() };
+    assert!((p.eta - 1.620_006_8).abs() < 1e-6);
+    let thin = "<bsdf type='principledthin'><float name='diff_trans' value='1.5'/></bsdf>";
+    let expected = PrincipledThin { diff_trans: 1.5.into(), ..PrincipledThin::default() };
+    assert_eq!(material(thin), MaterialKind::PrincipledThin(expected));
+    let bsdf = |inside: &str| scene(&format!("<shape type='cube'>{inside}</shape>"));
+    let both =
+        "§<bsdf type='principled'><float name='eta' value='1.4'/><float name='specular' value='.4'/></bsdf>";
+    refused(&bsdf(both), "either `eta` or `specular`");
+    refused(&bsdf("<bsdf type='principled'><float name='metallic' value='§2'/></bsdf>"), "metallic");
+    warned(
+        &bsdf("<bsdf type='principled'>§<float name='metalic' value='1'/></bsdf>"),
+        "did you mean `metallic`?",
+    );
+}
+
+#[test]
 fn what_is_not_supported_is_told() {
     let told =
         |bsdf: &str, message: &str| warned(&scene(&format!("<shape type='cube'>{bsdf}</shape>")), message);
     told(
-        "<bsdf type='roughdielectric'><string name='distribution' value='§beckmann'/></bsdf>",
-        "`ggx` is used",
+        "<bsdf type='roughdielectric'><string name='distribution' value='§phong'/></bsdf>",
+        "`beckmann` is used",
     );
-    told("<bsdf type='§roughdielectric'/>", "`ggx` is used");
-    let plastic = "<bsdf type='§plastic'><rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='int_ior' value='2'/></bsdf>";
-    let shown = told(plastic, "shown as diffuse of its colour").materials[0].kind;
+    let phong = "<bsdf type='§phong'><rgb name='diffuse_reflectance' value='.1 .2 .3'/><float name='n' value='2'/></bsdf>";
+    let shown = told(phong, "shown as diffuse of its colour").materials[0].kind;
     assert_eq!(shown, MaterialKind::Diffuse { albedo: Rgb::new(0.1, 0.2, 0.3).into() });
     told("<bsdf type='§bumpmap'><texture type='checkerboard'/><bsdf type='diffuse'/></bsdf>", "it is flat");
     told("<bsdf type='§coating'><bsdf type='diffuse'/></bsdf>", "inside of it");
-    told("<bsdf type='conductor'><string name='material' value='§TiO2'/></bsdf>", "no data of `TiO2`");
+    told("<bsdf type='conductor'><string name='material' value='§AlSb'/></bsdf>", "no data of `AlSb`");
     warned(&scene("<emitter type='§sunsky'/>"), "left out");
     warned(&scene("<shape type='§sdfgrid'/>"), "left out");
     warned(&scene("§<medium type='homogeneous'/>"), "participating media");

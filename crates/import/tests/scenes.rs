@@ -4,7 +4,7 @@ mod common;
 
 use caustica_math::{Filter, Rgb, Transform, Vec3};
 use caustica_scene::description::{
-    CameraKind, Crop, Geometry, Integrator, LightKind, MaterialKind, Technique, Texture,
+    CameraKind, Crop, Geometry, Integrator, LightKind, MaterialKind, Roughness, Technique, Texture,
 };
 use common::{good, parse, scene, warned};
 
@@ -126,26 +126,26 @@ fn materials() {
     use MaterialKind::*;
     assert_eq!(material("<bsdf type='mirror'/>"), Mirror { reflectance: Rgb::WHITE });
     let (interior_ior, exterior_ior) = (1.5046, 1.000_277);
-    assert_eq!(material("<bsdf type='dielectric'/>"), Dielectric { interior_ior, exterior_ior });
-    let rough = RoughDielectric { alpha: 0.1, interior_ior, exterior_ior };
+    assert_eq!(material("<bsdf type='dielectric'/>"), MaterialKind::dielectric(interior_ior, exterior_ior));
+    let rough = MaterialKind::rough_dielectric(Roughness::ggx(0.1), interior_ior, exterior_ior);
     assert_eq!(material("<bsdf type='roughdielectric'/>"), rough);
     let kd = Texture::Constant(Rgb::splat(0.5));
     let microfacet = Microfacet { alpha: 0.1, interior_ior, exterior_ior, kd };
     assert_eq!(material("<bsdf type='microfacet'/>"), microfacet);
     let text =
         "<bsdf type='dielectric'><float name='intIOR' value='1.7'/><float name='extIOR' value='2'/></bsdf>";
-    assert_eq!(material(text), Dielectric { interior_ior: 1.7, exterior_ior: 2.0 });
+    assert_eq!(material(text), MaterialKind::dielectric(1.7, 2.0));
 }
 
 #[test]
 fn metals() {
     let (eta, k) = caustica_scene::bsdf::metals::metal("Au").unwrap();
     let text = "<bsdf type='conductor'><string name='material' value='Au'/></bsdf>";
-    assert_eq!(material(text), MaterialKind::Conductor { eta, k, reflectance: Rgb::WHITE });
+    assert_eq!(material(text), MaterialKind::conductor(eta, k));
     let text = "<bsdf type='roughconductor'><color name='eta' value='1 2 3'/><color name='k' value='4 5 6'/>\
         <float name='extIOR' value='2'/><float name='alpha' value='.3'/></bsdf>";
     let (eta, k) = (Rgb::new(0.5, 1.0, 1.5), Rgb::new(2.0, 2.5, 3.0));
-    let rough = MaterialKind::RoughConductor { alpha: 0.3, eta, k, reflectance: Rgb::WHITE };
+    let rough = MaterialKind::rough_conductor(Roughness::ggx(0.3), eta, k);
     assert_eq!(material(text), rough);
 }
 

@@ -67,6 +67,44 @@ pub fn pow(x: f32, y: f32) -> f32 {
     libm::powf(x, y)
 }
 
+/// The error function of `x`: 2/√π·∫₀ˣ exp(−t²) dt.
+#[inline]
+pub fn erf(x: f32) -> f32 {
+    libm::erff(x)
+}
+
+/// The number whose error function is `y`; `y` outside of what [`erf`] of finite numbers gives is taken to its ends.
+///
+/// Giles, "Approximating the erfinv function", GPU Computing Gems 2, 2011: relative error below 10⁻⁶.
+pub fn inverse_erf(y: f32) -> f32 {
+    const NEAR: [f32; 9] = [
+        2.810_226_4e-8,
+        3.432_739_4e-7,
+        -3.523_387_7e-6,
+        -4.391_506_5e-6,
+        0.000_218_580_87,
+        -0.001_253_725_03,
+        -0.004_177_681_64,
+        0.246_640_73,
+        1.501_409_4,
+    ];
+    const FAR: [f32; 9] = [
+        -0.000_200_214_26,
+        0.000_100_950_56,
+        0.001_349_343_2,
+        -0.003_673_428_4,
+        0.005_739_507_7,
+        -0.007_622_461_3,
+        0.009_438_870_5,
+        1.001_674_1,
+        2.832_976_8,
+    ];
+    let y = y.clamp(-crate::ONE_BELOW, crate::ONE_BELOW);
+    let w = -ln((1.0 - y) * (1.0 + y));
+    let (x, terms) = if w < 5.0 { (w - 2.5, &NEAR) } else { (w.sqrt() - 3.0, &FAR) };
+    y * terms.iter().fold(0.0, |sum, term| sum * x + term)
+}
+
 /// The sine and cosine of `turns`·2π, for `turns` in [0, 1].
 ///
 /// An octant reduction and Taylor polynomials on [−π/4, π/4]: absolute error below 2e-7. About five
@@ -129,6 +167,18 @@ pub fn safe_sqrt(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn error_function_and_back() {
+        for i in -999..=999 {
+            let y = i as f32 / 1000.0;
+            let x = f64::from(inverse_erf(y));
+            assert!((libm::erf(x) - f64::from(y)).abs() <= 1e-6 * f64::from(y.abs()) + 1e-9, "{y}: {x}");
+        }
+        assert_eq!(inverse_erf(0.0), 0.0);
+        // The ends: 1 − 2⁻²⁴ is the error function of 3.8325.
+        assert!((inverse_erf(1.0) - 3.8325).abs() < 1e-2 && inverse_erf(-2.0) == -inverse_erf(1.0));
+    }
 
     #[test]
     fn turns_agree_with_radians() {

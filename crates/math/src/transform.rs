@@ -181,7 +181,8 @@ mod tests {
         assert!((there.vector(p) - t.vector(p)).length() < 1e-6);
         assert!((back.normal_back(p) - t.normal(p)).length() < 1e-6);
         assert!((back.point(there.point(p)) - p).length() < 1e-6);
-        assert!((there.magnitude(p) - there.point(p).abs()).min_element() >= 0.0);
+        let room = there.magnitude(p) - there.point(p).abs();
+        assert!(room.x >= 0.0 && room.y >= 0.0 && room.z >= 0.0);
         assert!((there.largest() - 3.0).abs() < 1.0);
         let mut rows: [[f64; 4]; 4] = t.into();
         rows[3] = [0.0, 0.1, 0.0, 1.0];

@@ -3,7 +3,7 @@
 
 use caustica_math::Rgb;
 use caustica_scene::Description;
-use caustica_scene::description::{LightKind, MaterialKind};
+use caustica_scene::description::{LightKind, MaterialKind, Roughness};
 use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten};
 use caustica_testkit::build::{diffuse, emit, glass, look, point_light, quad, scene, sphere};
 use caustica_testkit::scaled::scaled;
@@ -119,9 +119,9 @@ fn cameras_inside_lamps() {
 
 #[test]
 fn materials_at_the_ends_of_their_ranges() {
-    let dielectric = |interior_ior| MaterialKind::Dielectric { interior_ior, exterior_ior: 1.0 };
+    let dielectric = |interior_ior| MaterialKind::dielectric(interior_ior, 1.0);
     let rough =
-        |alpha, interior_ior| MaterialKind::RoughDielectric { alpha, interior_ior, exterior_ior: 1.0 };
+        |alpha, interior_ior| MaterialKind::rough_dielectric(Roughness::ggx(alpha), interior_ior, 1.0);
     let plastic = |alpha, interior_ior| MaterialKind::Microfacet {
         alpha,
         interior_ior,

@@ -16,7 +16,7 @@ fn scene(crop: Option<Crop>) -> Scene {
     (d.film.width, d.film.height, d.film.crop) = (40, 28, crop);
     d.camera.kind = CameraKind::Perspective { fov: 50.0 };
     let clay = d.add_material(MaterialKind::Diffuse { albedo: Rgb::new(0.7, 0.5, 0.4).into() });
-    let glass = d.add_material(MaterialKind::Dielectric { interior_ior: 1.5, exterior_ior: 1.0 });
+    let glass = d.add_material(MaterialKind::dielectric(1.5, 1.0));
     let mut add = |x: f32, y: f32, radius: f32, material: MaterialId, lit: Option<Rgb>| {
         d.shapes.push(Shape {
             name: "ball".into(),

@@ -2,7 +2,9 @@
 
 use caustica_math::{Filter, Rgb};
 
-use crate::description::{Description, FilmSettings, Material, MaterialKind, Texture, Wrapper};
+use crate::description::{
+    Description, FilmSettings, Material, MaterialKind, Roughness, Scalar, Texture, Wrapper,
+};
 use crate::diagnostic::Diagnostic;
 
 /// Indices of refraction and their ratios lie between one over this and this; roughnesses and the indices of metals
@@ -30,15 +32,28 @@ fn material(m: &Material) -> Result<(), Diagnostic> {
         }
         MaterialKind::Diffuse { .. } | MaterialKind::Null | MaterialKind::Wrapped(_) => Ok(()),
         MaterialKind::Mirror { reflectance } => colour(reflectance),
-        MaterialKind::Dielectric { interior_ior, exterior_ior }
+        MaterialKind::Dielectric { interior_ior, exterior_ior, .. }
         | MaterialKind::ThinDielectric { interior_ior, exterior_ior, .. } => iors(interior_ior, exterior_ior),
-        MaterialKind::RoughDielectric { alpha, interior_ior, exterior_ior }
-        | MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, .. } => {
-            roughness(alpha).and_then(|()| iors(interior_ior, exterior_ior))
+        MaterialKind::RoughDielectric { roughness, interior_ior, exterior_ior, .. } => {
+            rough(&roughness).and_then(|()| iors(interior_ior, exterior_ior))
         }
-        MaterialKind::Conductor { eta, k, reflectance } => metal(eta, k, reflectance),
-        MaterialKind::RoughConductor { alpha, eta, k, reflectance } => {
-            roughness(alpha).and_then(|()| metal(eta, k, reflectance))
+        MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, .. } => {
+            alpha_fits(alpha).and_then(|()| iors(interior_ior, exterior_ior))
+        }
+        MaterialKind::Conductor { eta, k, .. } => metal(eta, k),
+        MaterialKind::RoughConductor { roughness, eta, k, .. } => {
+            rough(&roughness).and_then(|()| metal(eta, k))
+        }
+        MaterialKind::Plastic { interior_ior, exterior_ior, .. } => iors(interior_ior, exterior_ior),
+        MaterialKind::RoughPlastic { alpha, interior_ior, exterior_ior, .. } => {
+            alpha_fits(alpha).and_then(|()| iors(interior_ior, exterior_ior))
+        }
+        MaterialKind::Principled(p) => {
+            p.scalars().into_iter().try_for_each(number).and_then(|()| iors(p.eta, 1.0))
+        }
+        MaterialKind::PrincipledThin(p) => {
+            let eta = if let Scalar::Constant(eta) = p.eta { eta } else { 1.0 };
+            p.scalars().into_iter().try_for_each(number).and_then(|()| iors(eta, 1.0))
         }
     };
     let textures = m.kind.textures().into_iter().try_for_each(|t| placement(t, "a material's texture"));
@@ -62,7 +77,26 @@ fn iors(interior: f32, exterior: f32) -> Result<(), Diagnostic> {
     Err(Diagnostic::error(message).hint(hint))
 }
 
-fn roughness(alpha: f32) -> Result<(), Diagnostic> {
+/// A parameter of a principled material.
+fn number(scalar: &Scalar) -> Result<(), Diagnostic> {
+    match scalar {
+        Scalar::Constant(x) if !(0.0..=MOST).contains(x) => {
+            let message = format!("a material's parameter of {x} cannot be rendered");
+            Err(Diagnostic::error(message).hint("most of them lie between 0 and 1"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// (What a texture holds is kept within bounds where it is looked up.)
+fn rough(roughness: &Roughness) -> Result<(), Diagnostic> {
+    roughness.alpha.iter().try_for_each(|alpha| match alpha {
+        Scalar::Constant(alpha) => alpha_fits(*alpha),
+        Scalar::Texture(_) => Ok(()),
+    })
+}
+
+fn alpha_fits(alpha: f32) -> Result<(), Diagnostic> {
     if (0.0..=MOST).contains(&alpha) {
         return Ok(());
     }
@@ -71,10 +105,10 @@ fn roughness(alpha: f32) -> Result<(), Diagnostic> {
         .hint(format!("it must lie between 0 and {MOST:e}; 0.1 is brushed, 1 is dull")))
 }
 
-fn metal(eta: Rgb, k: Rgb, reflectance: Rgb) -> Result<(), Diagnostic> {
+fn metal(eta: Rgb, k: Rgb) -> Result<(), Diagnostic> {
     let fits = |c: Rgb| c.is_valid() && c.max_channel() <= MOST;
     if fits(eta) && fits(k) {
-        return colour(reflectance);
+        return Ok(());
     }
     let message = "a metal's index of refraction is negative, not finite or too large";
     Err(Diagnostic::error(message).hint(format!("η and k must lie between 0 and {MOST:e}")))

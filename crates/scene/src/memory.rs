@@ -80,9 +80,8 @@ fn tables_of(light: &LightKind, d: &Description) -> u64 {
 
 /// Whether a shape may be. (What wrappers hold is not looked at.)
 fn is_transparent(d: &Description, shape: &Shape) -> bool {
-    use MaterialKind::{Dielectric, RoughDielectric, Wrapped};
     let kind = d.materials.get(shape.material.0 as usize).map(|m| &m.kind);
-    matches!(kind, Some(Dielectric { .. } | RoughDielectric { .. } | Wrapped(_)))
+    kind.is_some_and(|kind| kind.refracts() || matches!(kind, MaterialKind::Wrapped(_)))
 }
 
 /// Refuses a scene that does not fit.

@@ -8,12 +8,10 @@ use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
 use crate::camera::{Camera, film_settings};
 use crate::casters::Casters;
-use crate::description::{
-    Description, FilmSettings, Image, ImageId, LightKind, MaterialId, MaterialKind, Texture,
-};
+use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialId, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::light::{AreaLight, Light, LightPoint, LightQuery, Lights, Surroundings};
-use crate::material::bsdf_at;
+use crate::material::{FlatMaterial, bsdf_at, flatten};
 use crate::references;
 use crate::surface::{FARTHEST, FlatShape, SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
@@ -29,7 +27,7 @@ pub struct Scene {
     pub film: FilmSettings,
     surfaces: Surfaces,
     bvh: Bvh,
-    materials: Vec<MaterialKind>,
+    materials: Vec<FlatMaterial>,
     traits: Vec<Traits>,
     images: Vec<Image>,
     lights: Lights,
@@ -100,7 +98,7 @@ impl Scene {
         } else {
             (bounds.center(), ((bounds.max - bounds.center()).length() * 1.0001).max(f32::MIN_POSITIVE))
         };
-        let materials = description.materials.iter().map(|m| m.kind).collect();
+        let materials = flatten(&description.materials);
         let is_caster = |shape: &FlatShape| traits[shape.material as usize].is_caster;
         let casters = Casters::new(&surfaces, &bvh, is_caster);
         let images = std::mem::take(&mut description.images);
@@ -215,7 +213,7 @@ impl Scene {
 
     /// The material of that index.
     #[inline(always)]
-    pub(crate) fn material(&self, index: u32) -> &MaterialKind {
+    pub(crate) fn material(&self, index: u32) -> &FlatMaterial {
         &self.materials[index as usize]
     }
 

@@ -2,7 +2,7 @@
 
 use caustica_math::{Rgb, Spectrum, Vec2, Wavelengths};
 
-use crate::description::{Image, PixelLookup, Texture, TextureTransform, Wrap};
+use crate::description::{Image, PixelLookup, Scalar, Texture, TextureTransform, Wrap};
 
 /// A colour that may vary over a surface, as the renderer evaluates it.
 #[derive(Clone, Copy, Debug)]
@@ -61,11 +61,25 @@ impl TextureTable<'_> {
         }
     }
 
+    /// The number at `uv`.
+    #[inline]
+    pub fn number(&self, scalar: &Scalar, uv: Vec2) -> f32 {
+        match scalar {
+            Scalar::Constant(x) => *x,
+            Scalar::Texture(texture) => grey(self.rgb(texture, uv)),
+        }
+    }
+
     /// The texture's spectrum at `uv`.
     #[inline]
     pub fn spectrum(&self, texture: &Texture, uv: Vec2, wavelengths: Wavelengths) -> Spectrum {
         wavelengths.spectrum(self.rgb(texture, uv))
     }
+}
+
+/// The luminance, and of a grey exactly that.
+pub(crate) fn grey(Rgb([r, g, b]): Rgb) -> f32 {
+    if r == g && g == b { r } else { Rgb([r, g, b]).luminance() }
 }
 
 /// What the other coordinate adds. Nothing adds nothing, even times what is not finite.

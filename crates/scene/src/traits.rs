@@ -1,6 +1,6 @@
 //! What is to be known of a material, with all that is inside of it, before anything is rendered.
 
-use crate::description::{Material, MaterialId, MaterialKind, Texture, Wrapper};
+use crate::description::{Material, MaterialId, MaterialKind, Scalar, Texture, Wrapper};
 use crate::diagnostic::Diagnostic;
 
 /// Materials are not nested deeper.
@@ -82,14 +82,21 @@ fn find(
 /// Of a material without what is inside of it.
 fn of(kind: &MaterialKind) -> Traits {
     let uses_uv = kind.textures().into_iter().any(varies);
-    let own = Traits { uses_uv, ..Traits::default() };
+    let own = Traits { uses_uv, is_oriented: kind.is_oriented(), ..Traits::default() };
     match kind {
         MaterialKind::Diffuse { .. }
         | MaterialKind::RoughConductor { .. }
-        | MaterialKind::Microfacet { .. } => own,
+        | MaterialKind::Microfacet { .. }
+        | MaterialKind::Plastic { .. }
+        | MaterialKind::RoughPlastic { .. } => own,
         MaterialKind::Mirror { .. } | MaterialKind::Conductor { .. } => Traits { is_caster: true, ..own },
-        MaterialKind::RoughDielectric { .. } => {
-            Traits { transmits: true, bounds_a_medium: true, has_a_back: true, ..own }
+        MaterialKind::RoughDielectric { .. } | MaterialKind::Principled(_) => {
+            let refracts = kind.refracts();
+            Traits { transmits: refracts, bounds_a_medium: refracts, has_a_back: refracts, ..own }
+        }
+        MaterialKind::PrincipledThin(p) => {
+            let nothing = Scalar::Constant(0.0);
+            Traits { transmits: p.spec_trans != nothing || p.diff_trans != nothing, has_a_back: true, ..own }
         }
         MaterialKind::Dielectric { .. } => {
             Traits { transmits: true, bounds_a_medium: true, has_a_back: true, is_caster: true, ..own }

@@ -1,6 +1,6 @@
 //! What is merely suspicious about a scene.
 
-use crate::description::{Description, MaterialKind, Shape, Texture};
+use crate::description::{Description, MaterialKind, Principled, PrincipledThin, Shape, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::scene::Scene;
 use crate::surface::Surfaces;
@@ -103,16 +103,23 @@ fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
             MaterialKind::Diffuse { albedo: t } | MaterialKind::Microfacet { kd: t, .. } => {
                 ("a diffuse albedo", brightest(t))
             }
-            MaterialKind::Mirror { reflectance: c }
-            | MaterialKind::Conductor { reflectance: c, .. }
-            | MaterialKind::RoughConductor { reflectance: c, .. } => ("a reflectance", c.max_channel()),
-            MaterialKind::ThinDielectric { reflectance, transmittance, .. } => {
+            MaterialKind::Mirror { reflectance: c } => ("a reflectance", c.max_channel()),
+            MaterialKind::Conductor { reflectance: t, .. }
+            | MaterialKind::RoughConductor { reflectance: t, .. } => ("a reflectance", brightest(t)),
+            MaterialKind::Dielectric { reflectance, transmittance, .. }
+            | MaterialKind::RoughDielectric { reflectance, transmittance, .. }
+            | MaterialKind::ThinDielectric { reflectance, transmittance, .. } => {
                 ("a factor on what glass gives back", brightest(reflectance).max(brightest(transmittance)))
             }
-            MaterialKind::Dielectric { .. }
-            | MaterialKind::RoughDielectric { .. }
-            | MaterialKind::Null
-            | MaterialKind::Wrapped(_) => continue,
+            MaterialKind::Plastic { diffuse, reflectance, .. }
+            | MaterialKind::RoughPlastic { diffuse, reflectance, .. } => {
+                ("a reflectance", brightest(diffuse).max(brightest(reflectance)))
+            }
+            MaterialKind::Principled(Principled { base_color: t, .. })
+            | MaterialKind::PrincipledThin(PrincipledThin { base_color: t, .. }) => {
+                ("a base color", brightest(t))
+            }
+            MaterialKind::Null | MaterialKind::Wrapped(_) => continue,
         };
         if colour > 1.0 {
             let message = format!("{what} above one reflects more light than arrives");

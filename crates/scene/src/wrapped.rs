@@ -9,6 +9,7 @@ use crate::description::{BumpRule, MaterialKind, Texture, Wrapper};
 use crate::material::bsdf_at;
 use crate::scene::Scene;
 use crate::surface::SurfacePoint;
+use crate::texture::grey;
 
 /// A normal map's least cosine to the surface's own normal.
 const LEAST_COS: f32 = 1e-3;
@@ -39,10 +40,10 @@ impl Scene {
         };
         let share = |texture: &Texture| grey(textures.rgb(texture, point.uv)).clamp(0.0, 1.0);
         let mut placed = Placed { bsdf: Bsdf::Null, turned: false, bump: None };
-        let mut kind = self.material(self.surfaces().shapes[point.shape as usize].material);
+        let mut material = self.material(self.surfaces().shapes[point.shape as usize].material);
         loop {
-            let MaterialKind::Wrapped(wrapper) = kind else {
-                placed.bsdf = bsdf_at(kind, &textures, point.uv, w);
+            let MaterialKind::Wrapped(wrapper) = &material.kind else {
+                placed.bsdf = bsdf_at(material, &textures, point.uv, w);
                 return placed;
             };
             let inner = match wrapper {
@@ -77,7 +78,7 @@ impl Scene {
                     *inner
                 }
             };
-            kind = self.material(inner.0);
+            material = self.material(inner.0);
         }
     }
 
@@ -94,11 +95,6 @@ impl Scene {
         let normal = p.cross(q);
         if normal.z < 0.0 { -normal } else { normal }
     }
-}
-
-/// The luminance, and of a grey exactly that.
-fn grey(Rgb([r, g, b]): Rgb) -> f32 {
-    if r == g && g == b { r } else { Rgb([r, g, b]).luminance() }
 }
 
 impl Placed {

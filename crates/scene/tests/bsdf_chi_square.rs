@@ -25,7 +25,10 @@ impl Case<'_> {
 
     fn smooth_lobes(&self) -> Result<f64, String> {
         let bsdf = &self.example.bsdf;
-        let mut sample = |u| bsdf.sample(self.walk, self.given, u).map(|s| s.direction);
+        let mut sample = |u| {
+            let s = bsdf.sample(self.walk, self.given, u).filter(|s| !s.delta)?;
+            Some(s.direction)
+        };
         let pdf = |v: Vec3| {
             f64::from(match self.walk {
                 Walk::FromCamera => bsdf.eval(v, self.given).to_light_pdf.get(),
@@ -37,12 +40,14 @@ impl Case<'_> {
 
     /// Dirac lobes are as frequent as their probabilities tell.
     fn dirac_lobes(&self) -> Result<f64, String> {
-        // Reflected, refracted, none.
+        // Reflected, refracted, neither.
         let (mut observed, mut told) = ([0.0; 3], [0.0; 3]);
         let mut stream = random(7);
         let n = 20_000;
         for _ in 0..n {
-            let Some(s) = self.example.bsdf.sample(self.walk, self.given, next_3d(&mut stream)) else {
+            let bsdf = &self.example.bsdf;
+            let s = bsdf.sample(self.walk, self.given, next_3d(&mut stream));
+            let Some(s) = s.filter(|s| s.delta || !bsdf.is_partly_delta()) else {
                 observed[2] += 1.0;
                 continue;
             };
@@ -53,7 +58,9 @@ impl Case<'_> {
             observed[lobe] += 1.0;
             told[lobe] = f64::from(s.pdf.get());
         }
-        if (told[0] + told[1] - 1.0).abs() > 1e-6 {
+        if self.example.bsdf.is_partly_delta() {
+            told[2] = 1.0 - told[0] - told[1];
+        } else if (told[0] + told[1] - 1.0).abs() > 1e-6 {
             return Err(format!("{}: the lobes' probabilities are {told:?}", self.name()));
         }
         let n = f64::from(n);
@@ -77,7 +84,7 @@ fn run<'a>(cases: &[Case<'a>], test: impl Fn(&Case<'a>) -> Result<f64, String>) 
 
 fn cases(examples: &[Example], delta: bool) -> Vec<Case<'_>> {
     let mut cases = vec![];
-    for example in examples.iter().filter(|e| e.bsdf.is_delta() == delta) {
+    for example in examples.iter().filter(|e| e.bsdf.is_delta() == delta || e.bsdf.is_partly_delta()) {
         for walk in WALKS {
             for given in given_directions(&example.bsdf) {
                 cases.push(Case { example, walk, given });

@@ -7,10 +7,12 @@ mod bsdf_registry;
 
 use std::f64::consts::PI;
 
-use bsdf_registry::{ALPHAS, Example, INDICES, WALKS, examples, given_directions, metal, next_3d, random};
+use bsdf_registry::{
+    ALPHAS, Example, INDICES, WALKS, at_angle, examples, given_directions, metal, next_3d, plastic, random,
+};
 use caustica_math::stats::{Moments, sidak, student_t_test, welch_t_test};
 use caustica_math::{Spectrum, Vec3, warp};
-use caustica_scene::bsdf::{Bsdf, RoughConductor, RoughDielectric, Walk};
+use caustica_scene::bsdf::{Bsdf, Dielectric, Facets, PlasticColours, RoughConductor, RoughDielectric, Walk};
 
 /// The share of a beam's power that a sample carries away, by the lane of green. A beam from the light at `given`
 /// scatters f·cos(camera)/pdf of its power; by reciprocity, without the n² of radiance, so does the walk from
@@ -42,7 +44,10 @@ fn energy_is_not_created() {
         let [camera, light] = WALKS.map(|walk| albedo(example, walk, given, 8_000));
         let name = format!("{} at cos = {}: {} {}", example.name, given.z, camera.mean, light.mean);
         for m in [camera, light] {
-            assert!(m.mean <= 1.0 + 4.0 * m.variance_of_mean().sqrt() + 1e-5, "{name}");
+            // Principled surfaces add up what their lobes reflect, and that may be a little more than there is.
+            let principled = matches!(example.bsdf, Bsdf::Principled(_) | Bsdf::PrincipledThin(_));
+            let most = if principled { 1.25 } else { 1.0 };
+            assert!(m.mean <= most + 4.0 * m.variance_of_mean().sqrt() + 1e-5, "{name}");
         }
         let p = welch_t_test(&camera, &light, 1e-12);
         assert!(p > level, "{name}: p = {p:e}");
@@ -61,7 +66,14 @@ fn sampling_integrates_eval() {
     assert!(cases.len() > 40);
     let level = sidak(0.01, cases.len());
     for (example, given) in cases {
-        let sampled = albedo(example, Walk::FromCamera, given, 20_000);
+        let mut sampled = Moments::default();
+        let mut stream = random(4);
+        for _ in 0..20_000 {
+            // A Dirac lobe is nothing to `eval`.
+            let u = next_3d(&mut stream);
+            let dirac = example.bsdf.sample(Walk::FromCamera, given, u).is_some_and(|s| s.delta);
+            sampled.push(if dirac { 0.0 } else { share(example, Walk::FromCamera, given, u) });
+        }
         let mut stream = random(6);
         let mut blind = Moments::default();
         for _ in 0..40_000 {
@@ -102,6 +114,24 @@ fn smooth_surfaces_are_exact() {
     }
 }
 
+/// White plastic gives back all light if what is reflected on the way out is coloured again, and so does any
+/// plastic of a white base; a coat of index n lets (1 − F)·n⁻² out again, and 1 − r is as much of all.
+#[test]
+fn white_plastic_loses_nothing() {
+    let level = sidak(0.01, 4 * 2 * 2);
+    for eta in [1.3, 1.49, 1.9, 0.8] {
+        for nonlinear in [false, true] {
+            let colours = PlasticColours { diffuse: Spectrum::ONE, specular: Spectrum::ONE, nonlinear };
+            let example = plastic(eta, colours);
+            for given in [20.0, 75.0].map(at_angle) {
+                let kept = albedo(&example, Walk::FromCamera, given, 100_000);
+                let p = student_t_test(&kept, 1.0);
+                assert!(p > level, "{eta} {nonlinear}: {} at {} (p = {p:e})", kept.mean, given.z);
+            }
+        }
+    }
+}
+
 /// What a single scattering keeps at least, by the roughness, at all angles up to 62°. (Measured for metal and
 /// glass: 0.9978, 0.954, 0.760 and 0.430.)
 const KEPT: [f64; ALPHAS.len()] = [0.997, 0.95, 0.75, 0.42];
@@ -111,7 +141,12 @@ const KEPT: [f64; ALPHAS.len()] = [0.997, 0.95, 0.75, 0.42];
 fn rough_surfaces_lose_what_meets_a_second_microfacet() {
     for (alpha, least) in ALPHAS.into_iter().zip(KEPT) {
         let glass = INDICES
-            .map(|(i, e)| (Bsdf::RoughDielectric(RoughDielectric::new(alpha, i, e)), (i, e)))
+            .map(|(i, e)| {
+                (
+                    Bsdf::RoughDielectric(RoughDielectric::new(Facets::ggx(alpha), Dielectric::new(i, e))),
+                    (i, e),
+                )
+            })
             .into_iter();
         for (bsdf, indices) in glass.chain([(white_metal(alpha), (1.0, 1.0))]) {
             let example = Example { name: format!("{bsdf:?}"), bsdf, indices };
@@ -131,7 +166,7 @@ fn rough_surfaces_lose_what_meets_a_second_microfacet() {
 }
 
 fn white_metal(alpha: f32) -> Bsdf {
-    Bsdf::RoughConductor(RoughConductor::new(metal("none", Spectrum::ONE), alpha))
+    Bsdf::RoughConductor(RoughConductor::new(metal("none", Spectrum::ONE), Facets::ggx(alpha)))
 }
 
 /// At normal incidence a perfect mirror of GGX keeps ∫₀¹ α²/(α² + t)²·G₁(2θ) dt with t = tan² θ of the microfacet:

@@ -47,8 +47,8 @@ const PLASTIC: &[(f64, f64)] =
 
 fn figures() -> [Figures; 3] {
     let air = 1.000_277;
-    let glass = Bsdf::Dielectric(Dielectric { interior_ior: 1.5, exterior_ior: air });
-    let inverse = Bsdf::Dielectric(Dielectric { interior_ior: air, exterior_ior: 1.7 });
+    let glass = Bsdf::Dielectric(Dielectric::new(1.5, air));
+    let inverse = Bsdf::Dielectric(Dielectric::new(air, 1.7));
     let plastic = Bsdf::Microfacet(Microfacet::new(Spectrum([0.1, 0.2, 0.15, 0.0]), 0.1, 1.5, air));
     [
         Figures { bsdf: glass, means: GLASS_IN_AIR },

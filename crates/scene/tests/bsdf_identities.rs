@@ -9,8 +9,10 @@ use bsdf_registry::{
 };
 use caustica_math::{ONE_BELOW, Spectrum, Vec3};
 use caustica_scene::bsdf::{
-    Bsdf, Conductor, Dielectric, Evaluated, RoughConductor, RoughDielectric, Scattered, Walk,
+    Bsdf, Conductor, Dielectric, Evaluated, Facets, Plastic, PlasticColours, RoughCoat, RoughConductor,
+    RoughDielectric, RoughPlastic, Scattered, SmoothCoat, Walk,
 };
+use caustica_scene::description::{Distribution, Shadowing};
 
 /// The evaluated pair, with the two densities in the order of the walk.
 fn evaluate(bsdf: &Bsdf, walk: Walk, given: Vec3, sampled: Vec3) -> (Evaluated, f32, f32) {
@@ -36,14 +38,18 @@ fn samples_agree_with_eval() {
             for _ in 0..5_000 {
                 let given = random_direction(&mut stream);
                 let Some(s) = example.bsdf.sample(walk, given, next_3d(&mut stream)) else { continue };
-                assert_eq!(s.delta, example.bsdf.is_delta(), "{}", example.name);
+                assert!(
+                    s.delta == example.bsdf.is_delta() || example.bsdf.is_partly_delta(),
+                    "{}",
+                    example.name
+                );
                 assert!((s.direction.length() - 1.0).abs() < 1e-5, "{}: {:?}", example.name, s.direction);
                 let transmitted = given.z * s.direction.z < 0.0;
                 assert!(!transmitted || example.bsdf.transmits(), "{}", example.name);
                 let (e, pdf, reverse) = evaluate(&example.bsdf, walk, given, s.direction);
-                if s.delta {
+                if example.bsdf.is_delta() {
                     assert!(e.value.is_black() && pdf == 0.0 && reverse == 0.0, "{}", example.name);
-                } else {
+                } else if !s.delta {
                     let same = (e.value, pdf, reverse) == (s.value, s.pdf.get(), s.reverse_pdf.get());
                     assert!(same, "{} {walk:?}: {e:?} is not {s:?}", example.name);
                 }
@@ -72,7 +78,9 @@ fn light_can_be_turned_around() {
             tried += 1;
             lit += usize::from(!a.is_black());
         }
-        assert!(example.bsdf.is_delta() || lit > 500, "{}: only {lit} pairs are lit", example.name);
+        // Beckmann's distribution has no tails: most of a narrow one's values are too small for a number.
+        let few = if example.name.contains("0.02") { 50 } else { 500 };
+        assert!(example.bsdf.is_delta() || lit > few, "{}: only {lit} pairs are lit", example.name);
     }
 }
 
@@ -91,7 +99,7 @@ fn lobes(bsdf: &Bsdf, walk: Walk, given: Vec3) -> Vec<Scattered> {
 /// ratio is dω_c/dω_l = n_l²·|cos l|/(n_c²·|cos c|).
 #[test]
 fn dirac_lobes_are_the_same_for_both_walks() {
-    for example in examples().iter().filter(|e| e.bsdf.is_delta()) {
+    for example in examples().iter().filter(|e| e.bsdf.is_delta() || e.bsdf.is_partly_delta()) {
         for c in given_directions(&example.bsdf) {
             for from_camera in lobes(&example.bsdf, Walk::FromCamera, c) {
                 let l = from_camera.direction;
@@ -122,7 +130,7 @@ fn check_lobe(example: &Example, from_camera: &Scattered, from_light: &Scattered
 /// Refraction bends by Snell's law and has the weights of radiance and of flux.
 #[test]
 fn refraction_by_the_book() {
-    let glass = Bsdf::Dielectric(Dielectric { interior_ior: 1.5, exterior_ior: 1.0 });
+    let glass = Bsdf::Dielectric(Dielectric::new(1.5, 1.0));
     let given = at_angle(30.0);
     let refract = |walk| glass.sample(walk, given, [0.5, 0.5, ONE_BELOW]).unwrap();
     let s = refract(Walk::FromCamera);
@@ -136,9 +144,9 @@ fn refraction_by_the_book() {
 #[test]
 fn matched_indices_are_nothing() {
     for bsdf in [
-        Bsdf::Dielectric(Dielectric { interior_ior: 1.4, exterior_ior: 1.4 }),
-        Bsdf::RoughDielectric(RoughDielectric::new(0.3, 1.4, 1.4)),
-        Bsdf::RoughDielectric(RoughDielectric::new(0.3, 1.400_01, 1.4)),
+        Bsdf::Dielectric(Dielectric::new(1.4, 1.4)),
+        Bsdf::RoughDielectric(RoughDielectric::new(Facets::ggx(0.3), Dielectric::new(1.4, 1.4))),
+        Bsdf::RoughDielectric(RoughDielectric::new(Facets::ggx(0.3), Dielectric::new(1.400_01, 1.4))),
     ] {
         assert!(bsdf.is_delta() && bsdf.transmits());
         for walk in WALKS {
@@ -157,14 +165,20 @@ fn matched_indices_are_nothing() {
 #[test]
 fn rough_surfaces_become_smooth() {
     let gold = metal("Au", Spectrum([0.9, 0.5, 0.2, 0.0]));
-    let mut pairs =
-        vec![(Bsdf::Conductor(gold), Bsdf::RoughConductor(RoughConductor::new(gold, 5e-4)), [60.0, 10.0])];
-    for (interior_ior, exterior_ior) in INDICES {
-        let smooth = Bsdf::Dielectric(Dielectric { interior_ior, exterior_ior });
-        let rough = Bsdf::RoughDielectric(RoughDielectric::new(5e-4, interior_ior, exterior_ior));
-        // Below the critical angle on each side.
-        pairs.push((smooth, rough, [40.0, 20.0]));
-        pairs.push((smooth, rough, [165.0, 145.0]));
+    let mut pairs = vec![];
+    for facets in [Facets::ggx(5e-4), Facets::new(Distribution::Beckmann, Shadowing::Separable, [5e-4, 1e-3])]
+    {
+        let rough = Bsdf::RoughConductor(RoughConductor::new(gold, facets));
+        pairs.push((Bsdf::Conductor(gold), rough, [60.0, 10.0]));
+        for (interior_ior, exterior_ior) in INDICES {
+            let (reflectance, transmittance) =
+                (Spectrum([0.7, 0.8, 0.9, 0.0]), Spectrum([0.9, 0.7, 0.8, 0.0]));
+            let smooth = Dielectric { interior_ior, exterior_ior, reflectance, transmittance };
+            let rough = Bsdf::RoughDielectric(RoughDielectric::new(facets, smooth));
+            // Below the critical angle on each side.
+            pairs.push((Bsdf::Dielectric(smooth), rough, [40.0, 20.0]));
+            pairs.push((Bsdf::Dielectric(smooth), rough, [165.0, 145.0]));
+        }
     }
     for (smooth, rough, angles) in pairs {
         for given in angles.map(at_angle) {
@@ -193,6 +207,29 @@ fn check_limit(smooth: &Bsdf, rough: &Bsdf, walk: Walk, (given, u): (Vec3, [f32;
     }
     let ratio = |s: &Scattered| s.reverse_pdf.get() / s.pdf.get();
     assert!(close(ratio(&s), ratio(&r), 0.1), "{rough:?} {walk:?}: densities of {s:?} {r:?}");
+}
+
+/// As α → 0, what a rough plastic scatters apart from its highlight is what a smooth one does.
+#[test]
+fn rough_plastic_becomes_smooth() {
+    let (diffuse, specular) = (Spectrum([0.1, 0.5, 0.9, 0.0]), Spectrum::ONE);
+    for nonlinear in [false, true] {
+        let colours = PlasticColours { diffuse, specular, nonlinear };
+        let smooth = Plastic::new(SmoothCoat::new(1.5), colours);
+        for distribution in [Distribution::Ggx, Distribution::Beckmann] {
+            let rough = RoughPlastic::new(&RoughCoat::new(distribution, 1e-3, 1.5), colours);
+            for (l, c) in [(20.0, 50.0), (70.0, 35.0), (10.0, 80.0)] {
+                let [s, r] = [Bsdf::Plastic(smooth), Bsdf::RoughPlastic(rough)]
+                    .map(|b| b.eval(at_angle(l), at_angle(c)));
+                for lane in 0..3 {
+                    // The sum that stands for the internal reflectance is less by a part of 1/64.
+                    let ratio = r.value[lane] / s.value[lane];
+                    assert!((0.97..1.005).contains(&ratio), "{distribution:?} {l} {c}: {ratio}");
+                }
+                assert!(close(r.to_light_pdf.get(), s.to_light_pdf.get(), 0.01), "{l} {c}: {r:?} {s:?}");
+            }
+        }
+    }
 }
 
 /// A rough mirror keeps the colour of its metal: at α → 0 the weight is reflectance·F.

@@ -7,7 +7,7 @@ mod bsdf_registry;
 use bsdf_registry::{WALKS, metal, next_3d, random, random_direction};
 use caustica_math::stats::sidak;
 use caustica_math::{Frame, Spectrum, Vec3};
-use caustica_scene::bsdf::{Bsdf, Bump, Diffuse, RoughConductor, RoughDielectric, Walk};
+use caustica_scene::bsdf::{Bsdf, Bump, Dielectric, Diffuse, Facets, RoughConductor, RoughDielectric, Walk};
 use caustica_scene::description::BumpRule;
 use caustica_testkit::chi_square::{ChiSquareConfig, chi_square_sphere};
 
@@ -22,8 +22,8 @@ fn bumps() -> Vec<Bump> {
 fn bsdfs() -> Vec<Bsdf> {
     vec![
         Bsdf::Diffuse(Diffuse { albedo: Spectrum([0.9, 0.5, 0.2, 0.0]) }),
-        Bsdf::RoughConductor(RoughConductor::new(metal("Cu", Spectrum::ONE), 0.3)),
-        Bsdf::RoughDielectric(RoughDielectric::new(0.3, 1.5, 1.0)),
+        Bsdf::RoughConductor(RoughConductor::new(metal("Cu", Spectrum::ONE), Facets::ggx(0.3))),
+        Bsdf::RoughDielectric(RoughDielectric::new(Facets::ggx(0.3), Dielectric::new(1.5, 1.0))),
     ]
 }
 

@@ -4,7 +4,7 @@
 use caustica_math::{Filter, Rgb, Transform, Vec2, Vec3, Wavelengths};
 use caustica_scene::bvh::Ray;
 use caustica_scene::description::{
-    CameraKind, Geometry, Image, ImageId, LightKind, MaterialKind, Mesh, Texture, TextureTransform,
+    CameraKind, Geometry, Image, ImageId, LightKind, MaterialKind, Mesh, Roughness, Texture, TextureTransform,
 };
 use caustica_scene::{Description, Scene, Severity};
 use caustica_testkit::build;
@@ -178,31 +178,34 @@ fn materials_out_of_range() {
     for bad in [0.0, -1.0, NAN, INF, 1e-30, 1e30] {
         for (interior_ior, exterior_ior) in [(bad, 1.0), (1.0, bad), (bad, bad)] {
             for kind in [
-                MaterialKind::Dielectric { interior_ior, exterior_ior },
-                MaterialKind::RoughDielectric { alpha: 0.1, interior_ior, exterior_ior },
+                MaterialKind::dielectric(interior_ior, exterior_ior),
+                MaterialKind::rough_dielectric(Roughness::ggx(0.1), interior_ior, exterior_ior),
                 MaterialKind::Microfacet { alpha: 0.1, interior_ior, exterior_ior, kd: Rgb::BLACK.into() },
             ] {
                 refused("glass has about 1.5", with(kind));
             }
         }
     }
-    refused("and their ratio", with(MaterialKind::Dielectric { interior_ior: 1e4, exterior_ior: 1e-4 }));
-    let (eta, k, reflectance) = (Rgb::splat(0.2), Rgb::splat(3.0), Rgb::WHITE);
+    refused("and their ratio", with(MaterialKind::dielectric(1e4, 1e-4)));
+    let (eta, k, reflectance) = (Rgb::splat(0.2), Rgb::splat(3.0), Rgb::WHITE.into());
     for alpha in [-1e-9, NAN, INF, 1e30] {
-        refused("a roughness of", with(MaterialKind::RoughConductor { alpha, eta, k, reflectance }));
+        refused(
+            "a roughness of",
+            with(MaterialKind::RoughConductor { roughness: Roughness::ggx(alpha), eta, k, reflectance }),
+        );
     }
     for bad in [-0.1, NAN, INF].map(Rgb::splat) {
         refused("a material's colour", with(MaterialKind::Mirror { reflectance: bad }));
-        refused("a material's colour", with(MaterialKind::Conductor { eta, k, reflectance: bad }));
+        refused("a material's colour", with(MaterialKind::Conductor { eta, k, reflectance: bad.into() }));
         refused("a metal's index", with(MaterialKind::Conductor { eta: bad, k, reflectance }));
         refused(
             "a metal's index",
-            with(MaterialKind::RoughConductor { alpha: 0.1, eta, k: bad, reflectance }),
+            with(MaterialKind::RoughConductor { roughness: Roughness::ggx(0.1), eta, k: bad, reflectance }),
         );
     }
     for kind in [
         MaterialKind::Mirror { reflectance: Rgb::splat(2.0) },
-        MaterialKind::Conductor { eta, k, reflectance: Rgb::splat(1e30) },
+        MaterialKind::Conductor { eta, k, reflectance: Rgb::splat(1e30).into() },
     ] {
         warned("a reflectance above one reflects more light", with(kind));
     }

@@ -3,7 +3,7 @@
 use caustica_math::{Rgb, Transform, Vec3};
 use caustica_scene::description::{
     CameraKind, Crop, Geometry, Image, ImageId, LightKind, MaterialId, MaterialKind, Mesh, PixelLookup,
-    Texture, TextureTransform, Wrap,
+    Roughness, Texture, TextureTransform, Wrap,
 };
 use caustica_scene::{Description, Diagnostic, Origin, Scene, Severity};
 use caustica_testkit::build;
@@ -284,11 +284,7 @@ fn dielectrics_that_are_not_closed() {
     let begin = "scene.xml:3: floor is transparent but not closed";
     warns(begin, |d| d.shapes[0].material = build::glass(d));
     warns(begin, |d| {
-        d.shapes[0].material = d.add_material(MaterialKind::RoughDielectric {
-            alpha: 0.1,
-            interior_ior: 1.5,
-            exterior_ior: 1.0,
-        });
+        d.shapes[0].material = d.add_material(MaterialKind::rough_dielectric(Roughness::ggx(0.1), 1.5, 1.0));
     });
     let closed = |d: &mut Description| {
         let glass = build::glass(d);

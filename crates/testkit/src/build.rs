@@ -33,7 +33,7 @@ pub fn diffuse(d: &mut Description, albedo: f32) -> MaterialId {
 
 /// Glass of index 1.5.
 pub fn glass(d: &mut Description) -> MaterialId {
-    d.add_material(MaterialKind::Dielectric { interior_ior: 1.5, exterior_ior: 1.0 })
+    d.add_material(MaterialKind::dielectric(1.5, 1.0))
 }
 
 /// Adds a shape.

@@ -5,7 +5,8 @@ use caustica_math::elementary::sin_cos;
 use caustica_math::{Rgb, Transform, Vec2, Vec3};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    Camera, CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Mesh, Texture, TextureTransform,
+    Camera, CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Mesh, Roughness, Texture,
+    TextureTransform,
 };
 
 use crate::build::{add, diffuse, ellipsoid, emit, glass, light, look, point_light, quad, scene, sphere};
@@ -140,8 +141,7 @@ pub fn point_at_the_floor() -> Description {
 pub fn mirrored(by_transform: bool) -> Description {
     let mut d = dark_box();
     let m = diffuse(&mut d, 0.8);
-    let frosted =
-        d.add_material(MaterialKind::RoughDielectric { alpha: 0.2, interior_ior: 1.5, exterior_ior: 1.0 });
+    let frosted = d.add_material(MaterialKind::rough_dielectric(Roughness::ggx(0.2), 1.5, 1.0));
     let mut mesh = ellipsoid(5, [0.3, 0.5, 0.4]);
     for p in &mut mesh.positions {
         *p += Vec3::new(0.35, -0.4, 0.125);
@@ -240,7 +240,7 @@ pub fn plate() -> Description {
 pub fn nested_interfaces() -> Description {
     let mut d = open_box();
     let outer = glass(&mut d);
-    let inner = d.add_material(MaterialKind::Dielectric { interior_ior: 1.33, exterior_ior: 1.5 });
+    let inner = d.add_material(MaterialKind::dielectric(1.33, 1.5));
     let pearl = diffuse(&mut d, 0.8);
     sphere(&mut d, [0.0, -0.3, 0.0], 0.6, outer);
     // Touches the shell from inside at its lowest point.
@@ -255,7 +255,7 @@ pub fn nested_interfaces() -> Description {
 pub fn caster(inward: bool) -> Description {
     let mut d = open_box();
     let (interior_ior, exterior_ior) = if inward { (1.0, 1.5) } else { (1.5, 1.0) };
-    let m = d.add_material(MaterialKind::Dielectric { interior_ior, exterior_ior });
+    let m = d.add_material(MaterialKind::dielectric(interior_ior, exterior_ior));
     let mut mesh = ellipsoid(12, [0.4, 0.3, 0.4]);
     if inward {
         for t in &mut mesh.triangles {

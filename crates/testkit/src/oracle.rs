@@ -68,8 +68,8 @@ struct Node<'a> {
     normal: Option<Vector>,
     /// By how much rays start off it.
     offset: f32,
-    /// What scatters there; nothing at the two ends.
-    surface: Option<&'a Vertex>,
+    /// What scatters there, and whether by a Dirac lobe; nothing at the two ends.
+    surface: Option<(&'a Vertex, bool)>,
 }
 
 impl Node<'_> {
@@ -199,7 +199,9 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     }
     let starts = Starts {
         emission: lights.emission_pdf(lamp, narrow(emitted)),
-        next_event: nodes[1].surface.map_or(0.0, |v| lights.towards_pdf(v.receiver(), lamp).get().into()),
+        next_event: nodes[1]
+            .surface
+            .map_or(0.0, |(v, _)| lights.towards_pdf(v.receiver(), lamp).get().into()),
         camera: film_density,
         can_be_hit: !lights.lights.get(lamp.light).is_delta(),
     };
@@ -230,7 +232,7 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
 fn aimed_density(scene: &Scene, from: &Node<'_>, [before, after]: [&Node<'_>; 2]) -> Option<(f64, f64)> {
     let (direction, normal) = (from.to(before).0, from.normal?);
     let side = dot(normal, from.to(after).0).signum();
-    let transmits = from.surface?.bsdf.transmits();
+    let transmits = from.surface?.0.bsdf.transmits();
     let (mut all, mut hit, mut doubt) = (0.0, 0.0, 0.0);
     for caster in scene.casters().iter() {
         let (d, radius) = (plus(wide(caster.center), from.at, -1.0), f64::from(caster.radius));
@@ -300,19 +302,20 @@ fn nodes<'a>(c: &Contribution<'a>) -> Result<Vec<Node<'a>>, String> {
     if light.len() + eye.len() != s + t - 2 || light.len() != s.saturating_sub(1) {
         return Err(format!("{} light and {} eye vertices", light.len(), eye.len()));
     }
-    // A walk's last vertex is joined; it did not go on from there.
+    // A walk's last vertex is joined, by a smooth lobe, whichever way the walk went on from there.
     let scattered = light.iter().rev().skip(1).chain(eye.iter().rev().skip(s.min(1)));
-    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta()) {
+    if scattered.into_iter().any(|v| v.delta != v.bsdf.is_delta() && !v.bsdf.is_partly_delta()) {
         return Err("a vertex's Dirac flag is wrong".into());
     }
-    let surface = |v: &'a Vertex| {
+    let surface = |v: &'a Vertex, joined: bool| {
         let SurfacePoint { position, normal, offset, .. } = v.point;
-        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), offset, surface: Some(v) }
+        let surface = Some((v, v.delta && !joined));
+        Node { at: wide(position), infinite: false, normal: Some(wide(normal)), offset, surface }
     };
     let CameraPoint { at: eye_at, infinite: parallel } = c.path.camera;
     let mut nodes = vec![Node { at: wide(at), infinite, normal, offset, surface: None }];
-    nodes.extend(light.iter().map(surface));
-    nodes.extend(eye.iter().rev().map(surface));
+    nodes.extend(light.iter().enumerate().map(|(i, v)| surface(v, i + 1 == light.len())));
+    nodes.extend(eye.iter().rev().enumerate().map(|(i, v)| surface(v, i == 0 && s > 0)));
     nodes.push(Node { at: wide(eye_at), infinite: parallel, normal: None, offset: 0.0, surface: None });
     Ok(nodes)
 }

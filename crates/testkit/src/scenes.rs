@@ -3,7 +3,7 @@
 use caustica_math::{Rgb, Transform};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Texture, TextureTransform,
+    CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Roughness, Texture, TextureTransform,
 };
 
 use crate::build::{
@@ -44,7 +44,7 @@ pub fn inside_out(d: &mut Description, material: MaterialId) -> usize {
 /// A glass ball in a furnace: radiance inside scales by η², outside it is that of the furnace.
 pub fn glass_furnace() -> Description {
     let mut d = furnace();
-    let m = d.add_material(MaterialKind::Dielectric { interior_ior: 1.5, exterior_ior: 1.0 });
+    let m = d.add_material(MaterialKind::dielectric(1.5, 1.0));
     sphere(&mut d, [0.1, 0.0, 0.5], 0.2, m);
     d
 }
@@ -83,20 +83,20 @@ pub fn ball(kind: MaterialKind) -> Description {
 /// Glass of index 1.5, in either order.
 pub fn glass_kind(inverted: bool) -> MaterialKind {
     let (interior_ior, exterior_ior) = if inverted { (1.0, 1.5) } else { (1.5, 1.0) };
-    MaterialKind::Dielectric { interior_ior, exterior_ior }
+    MaterialKind::dielectric(interior_ior, exterior_ior)
 }
 
 /// Rough glass.
 pub fn rough_glass_kind() -> MaterialKind {
-    MaterialKind::RoughDielectric { alpha: 0.3, interior_ior: 1.5, exterior_ior: 1.0 }
+    MaterialKind::rough_dielectric(Roughness::ggx(0.3), 1.5, 1.0)
 }
 
 /// Copper, smooth or rough.
 pub fn metal_kind(alpha: Option<f32>) -> MaterialKind {
     let (eta, k) = (Rgb::new(0.2, 0.92, 1.1), Rgb::new(3.91, 2.45, 2.14));
     match alpha {
-        None => MaterialKind::Conductor { eta, k, reflectance: Rgb::WHITE },
-        Some(alpha) => MaterialKind::RoughConductor { alpha, eta, k, reflectance: Rgb::WHITE },
+        None => MaterialKind::conductor(eta, k),
+        Some(alpha) => MaterialKind::rough_conductor(Roughness::ggx(alpha), eta, k),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use caustica_math::{Rgb, Spectrum, Vec2};
 use caustica_scene::camera::CameraPoint;
-use caustica_scene::light::LightPoint;
+use caustica_scene::light::{Anchor, LightPoint};
 
 use crate::strategy::Strategy;
 use crate::vertex::Vertex;
@@ -59,6 +59,24 @@ pub struct Contribution<'a> {
     /// The weight of each strategy that could have made the path, by its s, with the balance heuristic: in proportion
     /// to how often it does, roulette aside. Empty unless the sink [weighs all](Sink::WEIGHS_ALL).
     pub weights: &'a [f32],
+}
+
+impl<'a> Contribution<'a> {
+    /// The surface vertices between the lamp and the camera, in that order, each with whether the path goes through it
+    /// by a Dirac lobe.
+    pub fn events(&self) -> impl Iterator<Item = (&'a Vertex, bool)> + use<'a> {
+        let PathView { lamp, light, mut eye, .. } = self.path;
+        let hits = self.strategy.s == 0;
+        if hits && lamp.anchor == Anchor::Surface {
+            // The last one is the lamp.
+            eye = &eye[..eye.len() - 1];
+        }
+        // Vertices that are joined scatter by their smooth lobes, however the walk went on from there.
+        let (joined_light, joined_eye) = (light.len(), if hits { 0 } else { eye.len() });
+        let light = light.iter().enumerate().map(move |(i, v)| (v, v.delta && i + 1 != joined_light));
+        let eye = eye.iter().enumerate().map(move |(i, v)| (v, v.delta && i + 1 != joined_eye));
+        light.chain(eye.rev())
+    }
 }
 
 /// A full path, in two parts that are joined by the strategy's edge.

@@ -3,7 +3,7 @@
 
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Description;
-use caustica_scene::description::{CameraKind, Integrator, LightKind, MaterialKind, Technique};
+use caustica_scene::description::{CameraKind, Integrator, LightKind, MaterialKind, Roughness, Technique};
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{self, diffuse, emit, look, quad, scene, sphere};
 use caustica_testkit::{scenes, ways::Way, ways::Way::*};
@@ -151,7 +151,7 @@ fn densities() {
 /// What carries no light is not sampled or absorbed, and nobody is told of it.
 #[test]
 fn no_light_is_no_failure() {
-    let rough = MaterialKind::RoughDielectric { alpha: 1.0, interior_ior: 1.5, exterior_ior: 1.0 };
+    let rough = MaterialKind::rough_dielectric(Roughness::ggx(1.0), 1.5, 1.0);
     let mut grazing = scenes::open_box();
     look(&mut grazing, [0.0, -1.0, -3.0], [0.0, -1.0, 0.0]);
     let black = MaterialKind::Diffuse { albedo: Rgb::BLACK.into() };

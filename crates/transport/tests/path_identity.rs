@@ -8,8 +8,9 @@ use std::collections::BTreeMap;
 
 use caustica_math::{Filter, Rgb, Transform, Vec2};
 use caustica_scene::description::{
-    BumpRule, CameraKind, Crop, EnvironmentRows, Geometry, Image, ImageId, LightKind, MaterialId,
-    MaterialKind, Texture, TextureTransform,
+    BumpRule, CameraKind, Crop, Distribution, EnvironmentRows, Geometry, Image, ImageId, LightKind,
+    MaterialId, MaterialKind, Principled, PrincipledThin, Roughness, Scalar, Shadowing, Texture,
+    TextureTransform,
 };
 use caustica_scene::{Description, Scene};
 use caustica_testkit::agreement::flatten;
@@ -213,19 +214,31 @@ fn egg(mut d: Description, material: MaterialKind) -> Description {
 }
 
 fn dielectric(interior_ior: f32) -> MaterialKind {
-    MaterialKind::Dielectric { interior_ior, exterior_ior: 1.0 }
+    MaterialKind::dielectric(interior_ior, 1.0)
 }
 
 fn rough_dielectric(interior_ior: f32, exterior_ior: f32) -> MaterialKind {
-    MaterialKind::RoughDielectric { alpha: 0.25, interior_ior, exterior_ior }
+    MaterialKind::rough_dielectric(Roughness::ggx(0.25), interior_ior, exterior_ior)
+}
+
+/// Beckmann's microfacets, with different roughnesses in the two directions.
+fn brushed(alpha: [f32; 2]) -> Roughness {
+    let alpha = alpha.map(Scalar::Constant);
+    Roughness { distribution: Distribution::Beckmann, shadowing: Shadowing::Separable, alpha }
+}
+
+fn rough_gold(brushed: Roughness) -> MaterialKind {
+    let MaterialKind::Conductor { eta, k, reflectance } = gold(0.0) else { unreachable!() };
+    MaterialKind::RoughConductor { roughness: brushed, eta, k, reflectance }
 }
 
 /// Smooth if `alpha` is zero.
 fn gold(alpha: f32) -> MaterialKind {
     let (eta, k) = (Rgb([0.14312, 0.37496, 1.4425]), Rgb([3.9832, 2.3857, 1.6032]));
-    let reflectance = Rgb([0.9, 1.0, 0.8]);
+    let reflectance = Rgb([0.9, 1.0, 0.8]).into();
     let smooth = MaterialKind::Conductor { eta, k, reflectance };
-    if alpha > 0.0 { MaterialKind::RoughConductor { alpha, eta, k, reflectance } } else { smooth }
+    let roughness = Roughness::ggx(alpha);
+    if alpha > 0.0 { MaterialKind::RoughConductor { roughness, eta, k, reflectance } } else { smooth }
 }
 
 fn microfacet() -> MaterialKind {
@@ -254,6 +267,15 @@ fn rough_materials() {
     verify("no rough interface", ball(rough_dielectric(1.3, 1.3)));
     verify("rough gold", ball(gold(0.2)));
     verify("sharp gold", ball(gold(0.06)));
+    let brushed = brushed([0.15, 0.4]);
+    verify("brushed gold", ball(rough_gold(brushed)));
+    let (reflectance, transmittance) = (Rgb([0.9, 0.5, 0.7]).into(), Rgb([0.4, 0.8, 1.0]).into());
+    let (roughness, interior_ior, exterior_ior) = (brushed, 1.5, 1.0);
+    let tinted = MaterialKind::Dielectric { interior_ior, exterior_ior, reflectance, transmittance };
+    verify("tinted glass", ball(tinted));
+    let tinted =
+        MaterialKind::RoughDielectric { roughness, interior_ior, exterior_ior, reflectance, transmittance };
+    verify("brushed tinted glass", ball(tinted));
     verify("microfacet", ball(microfacet()));
 }
 
@@ -261,6 +283,95 @@ fn rough_materials() {
 #[test]
 fn instances() {
     verify("instances", caustica_testkit::scenes::instanced());
+}
+
+fn smooth_plastic(nonlinear: bool) -> MaterialKind {
+    let (interior_ior, exterior_ior) = (1.7, 1.0);
+    let (diffuse, reflectance) = (Rgb([0.7, 0.5, 0.3]).into(), Rgb([0.8, 0.9, 1.0]).into());
+    MaterialKind::Plastic { interior_ior, exterior_ior, diffuse, reflectance, nonlinear }
+}
+
+fn rough_plastic() -> MaterialKind {
+    let (interior_ior, exterior_ior, alpha) = (1.5, 1.0, 0.2);
+    let (diffuse, reflectance) = (Rgb([0.7, 0.5, 0.3]).into(), Rgb([0.8, 0.9, 1.0]).into());
+    let distribution = Distribution::Beckmann;
+    MaterialKind::RoughPlastic {
+        distribution,
+        alpha,
+        interior_ior,
+        exterior_ior,
+        diffuse,
+        reflectance,
+        nonlinear: true,
+    }
+}
+
+fn principled() -> MaterialKind {
+    MaterialKind::Principled(Principled {
+        base_color: Rgb([0.7, 0.5, 0.3]).into(),
+        roughness: 0.5.into(),
+        anisotropic: 0.6.into(),
+        metallic: 0.3.into(),
+        spec_trans: 0.5.into(),
+        eta: 1.4,
+        spec_tint: 0.3.into(),
+        sheen: 0.5.into(),
+        sheen_tint: 0.5.into(),
+        flatness: 0.4.into(),
+        clearcoat: 0.5.into(),
+        clearcoat_gloss: 0.0.into(),
+    })
+}
+
+fn principled_thin() -> MaterialKind {
+    MaterialKind::PrincipledThin(PrincipledThin {
+        base_color: Rgb([0.7, 0.5, 0.3]).into(),
+        anisotropic: 0.4.into(),
+        spec_trans: 0.4.into(),
+        spec_tint: 0.3.into(),
+        sheen: 0.5.into(),
+        flatness: 0.4.into(),
+        diff_trans: 0.9.into(),
+        ..PrincipledThin::default()
+    })
+}
+
+#[test]
+fn plastics() {
+    verify("plastic", ball(smooth_plastic(false)));
+    verify("nonlinear plastic egg", egg(room(), smooth_plastic(true)));
+    verify("rough plastic", ball(rough_plastic()));
+    verify("rough plastic egg", egg(room(), rough_plastic()));
+    // A plastic floor, which most paths meet, below a sky.
+    let mut d = lit(&[environment]);
+    lamp(&mut d);
+    d.materials[0].kind = smooth_plastic(false);
+    verify("plastic room", d);
+}
+
+/// A Dirac lobe beside a smooth one, on both sides and under bumps.
+#[test]
+fn plastics_within_others() {
+    let mut d = room();
+    let (linear, nonlinear) = (d.add_material(smooth_plastic(false)), d.add_material(smooth_plastic(true)));
+    let both = two_sided(&mut d, linear, nonlinear);
+    quad(&mut d, [-0.5, -0.8, 0.0], [0.8, 0.1, 0.0], [0.0, 0.9, 0.3], both);
+    verify("two-sided plastic", d);
+    for rule in [BumpRule { flips: true, shadows: true }, BumpRule { flips: false, shadows: false }] {
+        let bumpy = made(room(), |d| {
+            let plastic = d.add_material(smooth_plastic(true));
+            bump(d, 0.1, rule, plastic)
+        });
+        verify(&format!("bumps of plastic by {rule:?}"), bumpy);
+    }
+}
+
+#[test]
+fn principled_materials() {
+    verify("principled", ball(principled()));
+    verify("principled egg", egg(room(), principled()));
+    verify("thin", ball(principled_thin()));
+    verify("thin egg", egg(room(), principled_thin()));
 }
 
 #[test]

@@ -277,7 +277,7 @@ fn furnaces_with_balls() {
     whole("blend", made(&frosted), (300, 0.005), all);
     // One in the other.
     let mut nested = with(glass_kind(false));
-    let water = nested.add_material(MaterialKind::Dielectric { interior_ior: 1.33, exterior_ior: 1.5 });
+    let water = nested.add_material(MaterialKind::dielectric(1.33, 1.5));
     sphere(&mut nested, [0.1, 0.2, -0.4], 0.25, water);
     whole("nested", nested, (140, 0.005), &[NAIVE, PATH, Integrator::Bdpt]);
     // One that is itself a lamp of what the walls are: diffuse, so that every integrator sees it.

@@ -5,7 +5,6 @@ use std::fmt;
 use caustica_scene::Scene;
 use caustica_scene::camera::Joins;
 use caustica_scene::light::{Light, LightPoint};
-use caustica_transport::vertex::Vertex;
 use caustica_transport::{Contribution, Strategy};
 
 /// What stands at the lamp's end of a path.
@@ -90,7 +89,7 @@ impl PathClass {
     /// The class of a contribution's path.
     pub fn of(scene: &Scene, c: &Contribution<'_>) -> Self {
         let lamp = LampEnd::of(scene, &c.path.lamp);
-        Self::new(lamp, surface_vertices(scene, c).map(Vertex::is_connectible))
+        Self::new(lamp, c.events().map(|(_, dirac)| !dirac))
     }
 
     /// What is at its lamp's end.
@@ -195,19 +194,6 @@ impl PathClass {
         let end = |diffuse| if diffuse { "D" } else { "S+" };
         format!("L{}(D|S)*{}E", end(self.first()), end(self.last()))
     }
-}
-
-/// The vertices of a contribution's path between the lamp and the camera, from the lamp on.
-pub(crate) fn surface_vertices<'c>(
-    scene: &Scene,
-    c: &Contribution<'c>,
-) -> impl Iterator<Item = &'c Vertex> + use<'c> {
-    let mut eye = c.path.eye;
-    if c.strategy.s == 0 && LampEnd::of(scene, &c.path.lamp) == LampEnd::Surface {
-        // The last one is the lamp.
-        eye = &eye[..eye.len() - 1];
-    }
-    c.path.light.iter().chain(eye.iter().rev())
 }
 
 impl fmt::Display for PathClass {

@@ -8,8 +8,7 @@ use super::class::Class;
 use super::context::Context;
 use super::fields::Fields;
 use super::spectrum::Role;
-use super::{ior, texture, wrapper};
-use crate::nori::range::Bounds;
+use super::{ior, plastic, principled, roughness, texture, wrapper};
 
 const BSDFS: &[&str] = &[
     "diffuse",
@@ -18,6 +17,10 @@ const BSDFS: &[&str] = &[
     "roughdielectric",
     "conductor",
     "roughconductor",
+    "plastic",
+    "roughplastic",
+    "principled",
+    "principledthin",
     "null",
     "twosided",
     "mask",
@@ -28,10 +31,6 @@ const BSDFS: &[&str] = &[
 
 /// What has no material of its own yet, and the property whose colour it is shown in.
 const SHOWN_DIFFUSE: &[(&str, &str)] = &[
-    ("plastic", "diffuse_reflectance"),
-    ("roughplastic", "diffuse_reflectance"),
-    ("principled", "base_color"),
-    ("principledthin", "base_color"),
     ("pplastic", "diffuse_reflectance"),
     ("phong", "diffuse_reflectance"),
     ("ward", "diffuse_reflectance"),
@@ -92,12 +91,7 @@ fn kind(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnosti
         "null" => MaterialKind::Null,
         "thindielectric" => {
             let (interior_ior, exterior_ior) = iors(fields)?;
-            let mut factor = |name| -> Result<Texture, Diagnostic> {
-                let found = texture::slot(fields, name, Role::Reflectance, cx)?;
-                Ok(found.unwrap_or(Rgb::WHITE.into()))
-            };
-            let (reflectance, transmittance) =
-                (factor("specular_reflectance")?, factor("specular_transmittance")?);
+            let [reflectance, transmittance] = factors(fields, cx)?;
             MaterialKind::ThinDielectric { interior_ior, exterior_ior, reflectance, transmittance }
         }
         "diffuse" => {
@@ -106,23 +100,36 @@ fn kind(fields: &mut Fields, cx: &mut Context) -> Result<MaterialKind, Diagnosti
         }
         "dielectric" => {
             let (interior_ior, exterior_ior) = iors(fields)?;
-            factors(fields, cx)?;
-            MaterialKind::Dielectric { interior_ior, exterior_ior }
+            let [reflectance, transmittance] = factors(fields, cx)?;
+            MaterialKind::Dielectric { interior_ior, exterior_ior, reflectance, transmittance }
         }
         "roughdielectric" => {
             let (interior_ior, exterior_ior) = iors(fields)?;
-            factors(fields, cx)?;
-            MaterialKind::RoughDielectric { alpha: alpha(fields, cx)?, interior_ior, exterior_ior }
+            let [reflectance, transmittance] = factors(fields, cx)?;
+            let roughness = roughness::read(fields, cx)?;
+            MaterialKind::RoughDielectric {
+                roughness,
+                interior_ior,
+                exterior_ior,
+                reflectance,
+                transmittance,
+            }
         }
         "conductor" => {
             let (eta, k) = ior::metal_index(fields, cx)?;
-            MaterialKind::Conductor { eta, k, reflectance: reflectance(fields, cx)? }
+            let reflectance = factor(fields, "specular_reflectance", cx)?;
+            MaterialKind::Conductor { eta, k, reflectance }
         }
         "roughconductor" => {
             let (eta, k) = ior::metal_index(fields, cx)?;
-            let alpha = alpha(fields, cx)?;
-            MaterialKind::RoughConductor { alpha, eta, k, reflectance: reflectance(fields, cx)? }
+            let roughness = roughness::read(fields, cx)?;
+            let reflectance = factor(fields, "specular_reflectance", cx)?;
+            MaterialKind::RoughConductor { roughness, eta, k, reflectance }
         }
+        "plastic" => plastic::smooth(fields, cx)?,
+        "roughplastic" => plastic::rough(fields, cx)?,
+        "principled" => principled::solid(fields, cx)?,
+        "principledthin" => principled::thin(fields, cx)?,
         plugin => return shown_diffuse(plugin, fields, cx),
     })
 }
@@ -149,52 +156,12 @@ fn iors(fields: &mut Fields) -> Result<(f32, f32), Diagnostic> {
     Ok((ior::index(fields, "int_ior", "bk7")?, ior::index(fields, "ext_ior", "air")?))
 }
 
-fn reflectance(fields: &mut Fields, cx: &mut Context) -> Result<Rgb, Diagnostic> {
-    let found = texture::constant(fields, "specular_reflectance", Role::Reflectance, cx)?;
-    Ok(found.unwrap_or(Rgb::WHITE))
+/// A factor on what physics says, one if there is none.
+fn factor(fields: &mut Fields, name: &'static str, cx: &mut Context) -> Result<Texture, Diagnostic> {
+    Ok(texture::slot(fields, name, Role::Reflectance, cx)?.unwrap_or(Rgb::WHITE.into()))
 }
 
-/// Glass here reflects and transmits what physics says.
-fn factors(fields: &mut Fields, cx: &mut Context) -> Result<(), Diagnostic> {
-    for name in ["specular_reflectance", "specular_transmittance"] {
-        let factor = texture::constant(fields, name, Role::Reflectance, cx)?;
-        if factor.is_some_and(|f| f != Rgb::WHITE) {
-            fields.warn(format!("`{name}` of the {} is not supported yet; it counts as 1", fields.title()));
-        }
-    }
-    Ok(())
-}
-
-/// The roughness of a GGX surface, which is what these surfaces are whatever the scene would like.
-fn alpha(fields: &mut Fields, cx: &mut Context) -> Result<f32, Diagnostic> {
-    fields.ignore(&["sample_visible"]);
-    let distributions = &["beckmann", "ggx", "phong", "as"];
-    match fields.choice("distribution", distributions)? {
-        Some(("ggx", _)) => {}
-        Some((name, property)) => {
-            let message = format!("the distribution `{name}` is not supported yet; `ggx` is used instead");
-            fields.warn_at(message, &property.value_origin);
-        }
-        None => fields.warn("the usual distribution `beckmann` is not supported yet; `ggx` is used instead"),
-    }
-    let (u, v) = (one_alpha(fields, "alpha_u", cx)?, one_alpha(fields, "alpha_v", cx)?);
-    let both = one_alpha(fields, "alpha", cx)?;
-    match (both, u, v) {
-        (Some(alpha), None, None) => Ok(alpha),
-        (None, None, None) => Ok(0.1),
-        (None, Some(u), Some(v)) if u == v => Ok(u),
-        (None, Some(u), Some(v)) => {
-            fields
-                .warn("roughness that depends on the direction is not supported yet; it is √(αᵤ·αᵥ) in all");
-            Ok((u * v).sqrt())
-        }
-        _ => Err(fields.error("give `alpha`, or both `alpha_u` and `alpha_v`")),
-    }
-}
-
-fn one_alpha(fields: &mut Fields, name: &'static str, cx: &mut Context) -> Result<Option<f32>, Diagnostic> {
-    if fields.has_texture(name) {
-        return Ok(texture::constant(fields, name, Role::Index, cx)?.map(|c| c.luminance().max(1e-4)));
-    }
-    fields.float_if_any(name, Bounds::Positive)
+/// Those on what a transparent surface reflects and transmits.
+fn factors(fields: &mut Fields, cx: &mut Context) -> Result<[Texture; 2], Diagnostic> {
+    Ok([factor(fields, "specular_reflectance", cx)?, factor(fields, "specular_transmittance", cx)?])
 }

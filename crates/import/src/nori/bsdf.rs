@@ -3,7 +3,7 @@
 use caustica_math::Rgb;
 use caustica_scene::Diagnostic;
 use caustica_scene::bsdf::metals::{METAL_NAMES, metal};
-use caustica_scene::description::{Material, MaterialId, MaterialKind};
+use caustica_scene::description::{Material, MaterialId, MaterialKind, Roughness};
 
 use super::context::Context;
 use super::fields::Fields;
@@ -41,20 +41,20 @@ fn kind(fields: &mut Fields, object: &Object, cx: &mut Context) -> Result<Materi
         "mirror" => MaterialKind::Mirror { reflectance: reflectance(fields)? },
         "dielectric" => {
             let (interior_ior, exterior_ior) = iors(fields)?;
-            MaterialKind::Dielectric { interior_ior, exterior_ior }
+            MaterialKind::dielectric(interior_ior, exterior_ior)
         }
         "roughdielectric" => {
             let (interior_ior, exterior_ior) = iors(fields)?;
-            MaterialKind::RoughDielectric { alpha: ggx_alpha(fields)?, interior_ior, exterior_ior }
+            MaterialKind::rough_dielectric(Roughness::ggx(ggx_alpha(fields)?), interior_ior, exterior_ior)
         }
         "conductor" => {
             let (eta, k) = metal_index(fields)?;
-            MaterialKind::Conductor { eta, k, reflectance: reflectance(fields)? }
+            MaterialKind::Conductor { eta, k, reflectance: reflectance(fields)?.into() }
         }
         "roughconductor" => {
             let (eta, k) = metal_index(fields)?;
-            let alpha = ggx_alpha(fields)?;
-            MaterialKind::RoughConductor { alpha, eta, k, reflectance: reflectance(fields)? }
+            let roughness = Roughness::ggx(ggx_alpha(fields)?);
+            MaterialKind::RoughConductor { roughness, eta, k, reflectance: reflectance(fields)?.into() }
         }
         "microfacet" => {
             let (interior_ior, exterior_ior) = iors(fields)?;

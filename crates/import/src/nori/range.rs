@@ -15,6 +15,8 @@ pub(crate) enum Bounds {
     Between(f64, f64),
     /// More than the first, up to the second.
     UpTo(f64, f64),
+    /// Between the two, both included.
+    Within(f64, f64),
 }
 
 impl Bounds {
@@ -26,6 +28,7 @@ impl Bounds {
             Self::NotNegative => (value >= 0.0, "must be finite and not negative".to_owned()),
             Self::PositiveOrInfinite => (value > 0.0, "must be more than 0".to_owned()),
             Self::Between(a, b) => (value > a && value < b, format!("must be between {a} and {b}")),
+            Self::Within(a, b) => ((a..=b).contains(&value), format!("must be from {a} to {b}")),
             Self::UpTo(a, b) => (value > a && value <= b, format!("must be more than {a} and at most {b}")),
         };
         let single = value as f32;
@@ -61,5 +64,7 @@ mod tests {
         assert!(Bounds::PositiveOrInfinite.check(1e60).is_err());
         assert!(Bounds::Between(0.0, 180.0).check(180.0).is_err());
         assert!(Bounds::UpTo(0.0, 90.0).check(90.0).is_ok());
+        assert!(Bounds::Within(0.0, 1.0).check(0.0).is_ok() && Bounds::Within(0.0, 1.0).check(1.0).is_ok());
+        assert!(Bounds::Within(0.0, 1.0).check(1.001).is_err());
     }
 }

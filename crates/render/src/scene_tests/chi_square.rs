@@ -114,6 +114,8 @@ impl Plan {
                     let [u0, u1] = stream.next_2d();
                     *point = bsdf
                         .sample(Walk::FromCamera, given, [u0, u1, stream.next_1d()])
+                        // What comes from a Dirac lobe is not in the density.
+                        .filter(|s| !s.delta)
                         .map(|s| spherical(s.direction));
                 }
             });

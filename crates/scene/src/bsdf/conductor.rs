@@ -2,8 +2,8 @@
 
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3};
 
+use super::facets::{Facets, half_vector, reflected};
 use super::fresnel::fresnel_conductor;
-use super::ggx::{Ggx, half_vector, reflected};
 use super::specular::sample_mirror;
 use super::{Evaluated, Scattered};
 
@@ -25,23 +25,23 @@ impl Conductor {
     }
 }
 
-/// A metal whose microfacets are distributed by GGX; black on the side away from the normal. Light that
-/// meets more than one microfacet is lost.
+/// A metal of microfacets; black on the side away from the normal. Light that meets more than one microfacet is
+/// lost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoughConductor {
     // Plain lanes: the alignment of spectra would cost every BSDF 16 bytes.
     eta: [f32; 4],
     k: [f32; 4],
     reflectance: [f32; 4],
-    ggx: Ggx,
+    facets: Facets,
 }
 
 impl RoughConductor {
-    /// A metal of roughness `alpha`, raised to [`super::ggx::MIN_ALPHA`] if it is less.
+    /// A metal with such microfacets.
     #[inline]
-    pub fn new(metal: Conductor, alpha: f32) -> Self {
+    pub fn new(metal: Conductor, facets: Facets) -> Self {
         let Conductor { eta, k, reflectance } = metal;
-        Self { eta: eta.0, k: k.0, reflectance: reflectance.0, ggx: Ggx::new(alpha) }
+        Self { eta: eta.0, k: k.0, reflectance: reflectance.0, facets }
     }
 
     #[inline]
@@ -50,14 +50,14 @@ impl RoughConductor {
             return Evaluated::default();
         }
         let Some((h, cos)) = half_vector(to_light, to_camera) else { return Evaluated::default() };
-        let half_density = 0.5 * self.ggx.density(h);
+        let half_density = 0.5 * self.facets.density(h);
         let fresnel = fresnel_conductor(cos.min(1.0), Spectrum(self.eta), Spectrum(self.k));
-        let shadowing = self.ggx.shadowing_over_twice_cos(to_light, to_camera);
+        let shadowing = self.facets.shadowing_over_twice_cos(to_light, to_camera);
         // D·G₂/(4·cos) for the value and D·G₁/(4·cos) for the densities.
         Evaluated {
             value: Spectrum(self.reflectance) * fresnel * (half_density * shadowing),
-            to_light_pdf: SolidAnglePdf(half_density * self.ggx.masking_over_twice_cos(to_camera)),
-            to_camera_pdf: SolidAnglePdf(half_density * self.ggx.masking_over_twice_cos(to_light)),
+            to_light_pdf: SolidAnglePdf(half_density * self.facets.masking_over_twice_cos(to_camera)),
+            to_camera_pdf: SolidAnglePdf(half_density * self.facets.masking_over_twice_cos(to_light)),
         }
     }
 
@@ -66,7 +66,7 @@ impl RoughConductor {
         if given.z <= 0.0 {
             return None;
         }
-        let h = self.ggx.sample_visible(given, [u[0], u[1]]);
+        let h = self.facets.sample_visible(given, [u[0], u[1]]);
         Some(reflected(given, h))
     }
 }

@@ -6,8 +6,8 @@ use caustica_math::elementary::{exp, ln, safe_sqrt, sin_cos_turns};
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3, warp};
 
 use super::Evaluated;
+use super::facets::{MIN_ALPHA, half_vector, reflected};
 use super::fresnel::fresnel_dielectric;
-use super::ggx::{MIN_ALPHA, half_vector, reflected};
 
 /// Nori's `microfacet`: f = kd/π + ks·F·D·G₁(l)·G₁(c)/(4·cos l·cos c) with Beckmann's D; black on the side away
 /// from the normal.
@@ -22,7 +22,7 @@ pub struct Microfacet {
 
 impl Microfacet {
     /// A surface of diffuse reflectance `kd` and Beckmann roughness `alpha` (raised to
-    /// [`super::ggx::MIN_ALPHA`] if it is less). The specular lobe weighs ks = 1 − max(kd).
+    /// [`super::facets::MIN_ALPHA`] if it is less). The specular lobe weighs ks = 1 − max(kd).
     #[inline]
     pub fn new(kd: Spectrum, alpha: f32, interior_ior: f32, exterior_ior: f32) -> Self {
         let ks = (1.0 - kd.max_lane()).max(0.0);

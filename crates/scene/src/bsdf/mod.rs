@@ -4,13 +4,18 @@
 //! Evaluation is in the one physical orientation, as light travels: from where `to_light` points, out to
 //! where `to_camera` points, whichever walk asks.
 
+mod beckmann;
 pub mod bump;
+pub mod coat;
 pub mod conductor;
 pub mod diffuse;
+pub mod facets;
 pub mod fresnel;
-pub mod ggx;
+mod ggx;
 pub mod metals;
 pub mod microfacet;
+pub mod plastic;
+pub mod principled;
 pub mod rough_dielectric;
 pub mod specular;
 pub mod thin;
@@ -18,9 +23,13 @@ pub mod thin;
 use caustica_math::{SolidAnglePdf, Spectrum, Vec3};
 
 pub use bump::Bump;
+pub use coat::{RoughCoat, SmoothCoat};
 pub use conductor::{Conductor, RoughConductor};
 pub use diffuse::Diffuse;
+pub use facets::Facets;
 pub use microfacet::Microfacet;
+pub use plastic::{Plastic, PlasticColours, RoughPlastic};
+pub use principled::{Principled, PrincipledThin};
 pub use rough_dielectric::RoughDielectric;
 pub use specular::Dielectric;
 pub use thin::ThinDielectric;
@@ -89,6 +98,14 @@ pub enum Bsdf {
     RoughConductor(RoughConductor),
     /// Nori's plastic.
     Microfacet(Microfacet),
+    /// A diffuse base under a smooth coat.
+    Plastic(Plastic),
+    /// A diffuse base under a rough coat.
+    RoughPlastic(RoughPlastic),
+    /// Disney's principled surface.
+    Principled(Principled),
+    /// The same of something thin.
+    PrincipledThin(PrincipledThin),
     /// A thin sheet of glass.
     ThinDielectric(ThinDielectric),
     /// No surface at all.
@@ -107,6 +124,10 @@ impl Bsdf {
             Self::RoughDielectric(b) => b.eval(to_light, to_camera),
             Self::RoughConductor(b) => b.eval(to_light, to_camera),
             Self::Microfacet(b) => b.eval(to_light, to_camera),
+            Self::Plastic(b) => b.eval(to_light, to_camera),
+            Self::RoughPlastic(b) => b.eval(to_light, to_camera),
+            Self::Principled(b) => b.eval(to_light, to_camera),
+            Self::PrincipledThin(b) => b.eval(to_light, to_camera),
             Self::Mirror { .. }
             | Self::Dielectric(_)
             | Self::Conductor(_)
@@ -132,6 +153,13 @@ impl Bsdf {
             Self::RoughDielectric(b) => b.sample_direction(given, u),
             Self::RoughConductor(b) => b.sample_direction(given, u),
             Self::Microfacet(b) => b.sample_direction(given, u),
+            Self::Plastic(b) => match b.sample_coat(given, u[2]) {
+                Some(coat) => return lit(coat),
+                None => b.sample_base(given, u),
+            },
+            Self::RoughPlastic(b) => b.sample_direction(given, u),
+            Self::Principled(b) => b.sample_direction(given, u),
+            Self::PrincipledThin(b) => b.sample_direction(given, u),
         }?;
         // Evaluated like any other pair, so that the densities agree with `eval` to the bit.
         let (evaluated, pdf, reverse_pdf) = match walk {
@@ -161,8 +189,26 @@ impl Bsdf {
             | Self::ThinDielectric(_)
             | Self::Null => true,
             Self::RoughDielectric(b) => b.is_matched(),
-            Self::Diffuse(_) | Self::RoughConductor(_) | Self::Microfacet(_) => false,
+            Self::Diffuse(_)
+            | Self::RoughConductor(_)
+            | Self::Microfacet(_)
+            | Self::Plastic(_)
+            | Self::RoughPlastic(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_) => false,
         }
+    }
+
+    /// Whether it has Dirac lobes beside smooth ones: a walk that went on from there may have done so by either.
+    #[inline]
+    pub fn is_partly_delta(&self) -> bool {
+        matches!(self, Self::Plastic(_))
+    }
+
+    /// Whether any of it is Dirac.
+    #[inline]
+    pub fn has_dirac(&self) -> bool {
+        self.is_delta() || matches!(self, Self::Plastic(_))
     }
 
     /// Whether [`Bsdf::sample`] asks for its third number.
@@ -172,7 +218,11 @@ impl Bsdf {
             Self::Dielectric(_)
             | Self::RoughDielectric(_)
             | Self::Microfacet(_)
-            | Self::ThinDielectric(_) => true,
+            | Self::ThinDielectric(_)
+            | Self::Plastic(_)
+            | Self::RoughPlastic(_)
+            | Self::Principled(_)
+            | Self::PrincipledThin(_) => true,
             Self::Diffuse(_)
             | Self::Mirror { .. }
             | Self::Conductor(_)
@@ -191,6 +241,7 @@ impl Bsdf {
         let (interior, exterior) = match self {
             Self::Dielectric(b) => (b.interior_ior, b.exterior_ior),
             Self::RoughDielectric(b) => b.indices(),
+            Self::Principled(b) => (b.eta, 1.0),
             _ => return 1.0,
         };
         let ratio = if to_light_cos > 0.0 { interior / exterior } else { exterior / interior };
@@ -208,11 +259,15 @@ impl Bsdf {
     pub fn transmits(&self) -> bool {
         match self {
             Self::Dielectric(_) | Self::RoughDielectric(_) | Self::ThinDielectric(_) | Self::Null => true,
+            Self::Principled(b) => b.transmits(),
+            Self::PrincipledThin(b) => b.transmits(),
             Self::Diffuse(_)
             | Self::Mirror { .. }
             | Self::Conductor(_)
             | Self::RoughConductor(_)
-            | Self::Microfacet(_) => false,
+            | Self::Microfacet(_)
+            | Self::Plastic(_)
+            | Self::RoughPlastic(_) => false,
         }
     }
 }

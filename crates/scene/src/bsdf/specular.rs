@@ -31,9 +31,19 @@ pub struct Dielectric {
     pub interior_ior: f32,
     /// Index of refraction on the side of the normal. If the two are equal, light goes straight through.
     pub exterior_ior: f32,
+    /// Factor on Fresnel's reflectance.
+    pub reflectance: Spectrum,
+    /// Factor on Fresnel's transmittance.
+    pub transmittance: Spectrum,
 }
 
 impl Dielectric {
+    /// An interface that neither dims nor tints.
+    #[inline]
+    pub fn new(interior_ior: f32, exterior_ior: f32) -> Self {
+        Self { interior_ior, exterior_ior, reflectance: Spectrum::ONE, transmittance: Spectrum::ONE }
+    }
+
     /// `u[2]` chooses reflection with Fresnel's probability.
     #[inline]
     pub(super) fn sample(&self, walk: Walk, given: Vec3, u: [f32; 3]) -> Option<Scattered> {
@@ -43,7 +53,7 @@ impl Dielectric {
         if u[2] < interface.reflectance {
             return Some(Scattered {
                 direction: mirrored(given),
-                value: Spectrum::splat(interface.reflectance),
+                value: self.reflectance * interface.reflectance,
                 pdf: SolidAnglePdf(interface.reflectance),
                 reverse_pdf: SolidAnglePdf(interface.reflectance),
                 delta: true,
@@ -59,12 +69,13 @@ impl Dielectric {
                 -eta * given.y,
                 (-interface.cos_refracted).copysign(-given.z),
             ),
-            value: Spectrum::splat(match walk {
-                // (n_camera/n_light)²: radiance shrinks as its beam widens.
-                Walk::FromCamera => share * eta * eta,
-                // The same Dirac lobe by the solid angle of the other direction: the squares cancel.
-                Walk::FromLight => share * cos / interface.cos_refracted,
-            }),
+            value: self.transmittance
+                * match walk {
+                    // (n_camera/n_light)²: radiance shrinks as its beam widens.
+                    Walk::FromCamera => share * eta * eta,
+                    // The same Dirac lobe by the solid angle of the other direction: the squares cancel.
+                    Walk::FromLight => share * cos / interface.cos_refracted,
+                },
             pdf: SolidAnglePdf(share),
             reverse_pdf: SolidAnglePdf(share * spread),
             delta: true,

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use caustica_math::Rgb;
 use serde::{Deserialize, Serialize};
 
-use super::Wrapper;
+use super::{Distribution, Principled, PrincipledThin, Roughness, Scalar, Wrapper};
 use crate::Origin;
 
 /// The index of an image in [`super::Description::images`].
@@ -116,6 +116,7 @@ pub struct Material {
 /// indices between 0 and 10⁶; reflectances above one get a warning. Roughnesses below 10⁻⁴ count as that. The side of the normal is "outside" (`exterior_ior`), the other
 /// "inside".
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(clippy::large_enum_variant, reason = "a scene has few materials, and they stay where they are")]
 pub enum MaterialKind {
     /// Lambertian, on the side of the normal; black on the other.
     Diffuse {
@@ -133,15 +134,23 @@ pub enum MaterialKind {
         interior_ior: f32,
         /// Index of refraction outside.
         exterior_ior: f32,
+        /// Factor on Fresnel's reflectance.
+        reflectance: Texture,
+        /// Factor on Fresnel's transmittance.
+        transmittance: Texture,
     },
-    /// A GGX interface between two transparent media.
+    /// A rough interface between two transparent media.
     RoughDielectric {
-        /// Roughness α of GGX.
-        alpha: f32,
+        /// Of the microfacets.
+        roughness: Roughness,
         /// Index of refraction inside.
         interior_ior: f32,
         /// Index of refraction outside.
         exterior_ior: f32,
+        /// Factor on Fresnel's reflectance.
+        reflectance: Texture,
+        /// Factor on Fresnel's transmittance.
+        transmittance: Texture,
     },
     /// A smooth metal on the side of the normal.
     Conductor {
@@ -150,18 +159,18 @@ pub enum MaterialKind {
         /// Imaginary part of the index (extinction), relative to the outside.
         k: Rgb,
         /// Factor on the reflectance.
-        reflectance: Rgb,
+        reflectance: Texture,
     },
-    /// A GGX metal on the side of the normal.
+    /// A rough metal on the side of the normal.
     RoughConductor {
-        /// Roughness α of GGX.
-        alpha: f32,
+        /// Of the microfacets.
+        roughness: Roughness,
         /// Real part of the index, relative to the outside.
         eta: Rgb,
         /// Imaginary part of the index (extinction), relative to the outside.
         k: Rgb,
         /// Factor on the reflectance.
-        reflectance: Rgb,
+        reflectance: Texture,
     },
     /// Nori's `microfacet`: a diffuse base and a Beckmann specular lobe of weight 1 − max(kd).
     Microfacet {
@@ -174,6 +183,40 @@ pub enum MaterialKind {
         /// Diffuse reflectance.
         kd: Texture,
     },
+    /// A diffuse base under a smooth dielectric coat, on the side of the normal.
+    Plastic {
+        /// Index of refraction inside.
+        interior_ior: f32,
+        /// Index of refraction outside.
+        exterior_ior: f32,
+        /// Reflectance of the base.
+        diffuse: Texture,
+        /// Factor on what the coat reflects.
+        reflectance: Texture,
+        /// Whether light that the coat sends back to the base is coloured again.
+        nonlinear: bool,
+    },
+    /// A diffuse base under a rough dielectric coat, on the side of the normal.
+    RoughPlastic {
+        /// Of the coat's microfacets.
+        distribution: Distribution,
+        /// Roughness of the coat.
+        alpha: f32,
+        /// Index of refraction inside.
+        interior_ior: f32,
+        /// Index of refraction outside.
+        exterior_ior: f32,
+        /// Reflectance of the base.
+        diffuse: Texture,
+        /// Factor on what the coat reflects.
+        reflectance: Texture,
+        /// Whether light that the coat sends back to the base is coloured again.
+        nonlinear: bool,
+    },
+    /// Disney's principled material.
+    Principled(Principled),
+    /// Disney's principled material of something thin.
+    PrincipledThin(PrincipledThin),
     /// A thin sheet of glass, through which light passes straight.
     ThinDielectric {
         /// Index of refraction of the sheet.
@@ -192,19 +235,95 @@ pub enum MaterialKind {
     Wrapped(Wrapper),
 }
 
+/// What neither dims nor tints.
+const WHITE: Texture = Texture::Constant(Rgb::WHITE);
+
 impl MaterialKind {
+    /// A smooth interface between two transparent media.
+    pub fn dielectric(interior_ior: f32, exterior_ior: f32) -> Self {
+        Self::Dielectric { interior_ior, exterior_ior, reflectance: WHITE, transmittance: WHITE }
+    }
+
+    /// A rough interface between two transparent media.
+    pub fn rough_dielectric(roughness: Roughness, interior_ior: f32, exterior_ior: f32) -> Self {
+        Self::RoughDielectric {
+            roughness,
+            interior_ior,
+            exterior_ior,
+            reflectance: WHITE,
+            transmittance: WHITE,
+        }
+    }
+
+    /// A smooth metal.
+    pub fn conductor(eta: Rgb, k: Rgb) -> Self {
+        Self::Conductor { eta, k, reflectance: WHITE }
+    }
+
+    /// A rough metal.
+    pub fn rough_conductor(roughness: Roughness, eta: Rgb, k: Rgb) -> Self {
+        Self::RoughConductor { roughness, eta, k, reflectance: WHITE }
+    }
+
+    /// Whether light passes into a medium behind the surface, which it leaves by another one.
+    pub fn refracts(&self) -> bool {
+        match self {
+            Self::Dielectric { .. } | Self::RoughDielectric { .. } => true,
+            Self::Principled(p) => p.spec_trans != Scalar::Constant(0.0),
+            _ => false,
+        }
+    }
+
+    /// Whether it scatters differently when the surface is turned about its normal.
+    pub fn is_oriented(&self) -> bool {
+        let turned = |anisotropic: &Scalar| *anisotropic != Scalar::Constant(0.0);
+        match self {
+            Self::RoughDielectric { roughness, .. } | Self::RoughConductor { roughness, .. } => {
+                roughness.alpha[0] != roughness.alpha[1]
+            }
+            Self::Principled(p) => turned(&p.anisotropic),
+            Self::PrincipledThin(p) => turned(&p.anisotropic),
+            _ => false,
+        }
+    }
+
     /// All textures that the material itself looks up.
     pub fn textures(&self) -> Vec<&Texture> {
+        let mut all = Vec::new();
+        let mut scalars: Vec<&Scalar> = Vec::new();
         match self {
-            Self::Diffuse { albedo: t } | Self::Microfacet { kd: t, .. } => vec![t],
-            Self::ThinDielectric { reflectance, transmittance, .. } => vec![reflectance, transmittance],
-            Self::Wrapped(wrapper) => wrapper.texture().into_iter().collect(),
-            Self::Mirror { .. }
-            | Self::Dielectric { .. }
-            | Self::RoughDielectric { .. }
-            | Self::Conductor { .. }
-            | Self::RoughConductor { .. }
-            | Self::Null => Vec::new(),
+            Self::Diffuse { albedo: t } | Self::Microfacet { kd: t, .. } => all.push(t),
+            Self::Mirror { .. } | Self::Null => {}
+            Self::Wrapped(wrapper) => all.extend(wrapper.texture()),
+            Self::Conductor { reflectance, .. } => all.push(reflectance),
+            Self::Dielectric { reflectance, transmittance, .. }
+            | Self::ThinDielectric { reflectance, transmittance, .. } => {
+                all.extend([reflectance, transmittance]);
+            }
+            Self::RoughDielectric { roughness, reflectance, transmittance, .. } => {
+                all.extend([reflectance, transmittance]);
+                scalars.extend(&roughness.alpha);
+            }
+            Self::RoughConductor { roughness, reflectance, .. } => {
+                all.push(reflectance);
+                scalars.extend(&roughness.alpha);
+            }
+            Self::Plastic { diffuse, reflectance, .. } | Self::RoughPlastic { diffuse, reflectance, .. } => {
+                all.extend([diffuse, reflectance]);
+            }
+            Self::Principled(p) => {
+                all.push(&p.base_color);
+                scalars.extend(p.scalars());
+            }
+            Self::PrincipledThin(p) => {
+                all.push(&p.base_color);
+                scalars.extend(p.scalars());
+            }
         }
+        all.extend(scalars.into_iter().filter_map(|s| match s {
+            Scalar::Constant(_) => None,
+            Scalar::Texture(t) => Some(t),
+        }));
+        all
     }
 }

@@ -16,6 +16,8 @@ mod instance;
 mod integrator;
 mod light;
 mod material;
+mod principled;
+mod roughness;
 mod shape;
 mod wrapper;
 
@@ -29,6 +31,8 @@ pub use light::{EnvironmentRows, Light, LightKind};
 pub use material::{
     Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,
 };
+pub use principled::{Principled, PrincipledThin};
+pub use roughness::{Distribution, Roughness, Scalar, Shadowing};
 pub use shape::{Geometry, Mesh, Shape};
 pub use wrapper::{BumpRule, Wrapper};
 

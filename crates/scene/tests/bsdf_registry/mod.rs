@@ -5,9 +5,11 @@
 
 use caustica_math::{Rgb, SampleStream, Spectrum, StreamId, Vec3, Wavelengths, warp};
 use caustica_scene::bsdf::{
-    Bsdf, Conductor, Dielectric, Diffuse, Microfacet, RoughConductor, RoughDielectric, ThinDielectric, Walk,
-    metals,
+    Bsdf, Conductor, Dielectric, Diffuse, Facets, Microfacet, Plastic, PlasticColours, Principled,
+    PrincipledThin, RoughCoat, RoughConductor, RoughDielectric, RoughPlastic, SmoothCoat, ThinDielectric,
+    Walk, metals,
 };
+use caustica_scene::description::{Distribution, Shadowing};
 use caustica_testkit::seed::seed;
 
 /// The roughnesses that rough surfaces are tested at.
@@ -56,27 +58,30 @@ fn examples_after(previous: Option<&Bsdf>) -> Vec<Example> {
         Some(Bsdf::Diffuse(_)) => vec![opaque("mirror", Bsdf::Mirror { reflectance: colour() })],
         Some(Bsdf::Mirror { .. }) => glass()
             .map(|(interior_ior, exterior_ior)| {
-                let bsdf = Bsdf::Dielectric(Dielectric { interior_ior, exterior_ior });
+                let bsdf = Bsdf::Dielectric(Dielectric::new(interior_ior, exterior_ior));
                 named(format!("dielectric {interior_ior}/{exterior_ior}"), bsdf, (interior_ior, exterior_ior))
             })
             .collect(),
         Some(Bsdf::Dielectric(_)) => glass()
             .flat_map(|(interior, exterior)| {
-                rough().map(move |alpha| {
-                    let bsdf = Bsdf::RoughDielectric(RoughDielectric::new(alpha, interior, exterior));
-                    named(
-                        format!("rough dielectric {alpha} {interior}/{exterior}"),
-                        bsdf,
-                        (interior, exterior),
-                    )
+                let kinds = facets().into_iter().take(if interior == INDICES[0].0 {
+                    usize::MAX
+                } else {
+                    ALPHAS.len()
+                });
+                kinds.map(move |(roughness, facets)| {
+                    let bsdf = RoughDielectric::new(facets, Dielectric::new(interior, exterior));
+                    let name = format!("rough dielectric {roughness} {interior}/{exterior}");
+                    named(name, Bsdf::RoughDielectric(bsdf), (interior, exterior))
                 })
             })
             .collect(),
         Some(Bsdf::RoughDielectric(_)) => vec![opaque("gold", Bsdf::Conductor(metal("Au", colour())))],
-        Some(Bsdf::Conductor(_)) => rough()
-            .map(|alpha| {
-                let bsdf = RoughConductor::new(metal("Cu", colour()), alpha);
-                opaque(&format!("rough copper {alpha}"), Bsdf::RoughConductor(bsdf))
+        Some(Bsdf::Conductor(_)) => facets()
+            .into_iter()
+            .map(|(roughness, facets)| {
+                let bsdf = RoughConductor::new(metal("Cu", colour()), facets);
+                opaque(&format!("rough copper {roughness}"), Bsdf::RoughConductor(bsdf))
             })
             .collect(),
         Some(Bsdf::RoughConductor(_)) => rough()
@@ -85,7 +90,20 @@ fn examples_after(previous: Option<&Bsdf>) -> Vec<Example> {
                 opaque(&format!("microfacet {alpha}"), Bsdf::Microfacet(bsdf))
             })
             .collect(),
-        Some(Bsdf::Microfacet(_)) => glass()
+        Some(Bsdf::Microfacet(_)) => [false, true].map(|nonlinear| plastic(1.49, colours(nonlinear))).into(),
+        Some(Bsdf::Plastic(_)) => [
+            ("Beckmann 0.02", RoughCoat::new(Distribution::Beckmann, 0.02, 1.49)),
+            ("Beckmann 0.3", RoughCoat::new(Distribution::Beckmann, 0.3, 1.49)),
+            ("GGX 0.3", RoughCoat::new(Distribution::Ggx, 0.3, 1.9)),
+        ]
+        .map(|(name, coat)| {
+            let bsdf = RoughPlastic::new(&coat, colours(true));
+            opaque(&format!("rough plastic {name}"), Bsdf::RoughPlastic(bsdf))
+        })
+        .into(),
+        Some(Bsdf::RoughPlastic(_)) => principled_examples(),
+        Some(Bsdf::Principled(_)) => thin_examples(),
+        Some(Bsdf::PrincipledThin(_)) => glass()
             .map(|indices| {
                 let bsdf = ThinDielectric::new(indices, Spectrum::ONE, Spectrum::ONE);
                 opaque(&format!("thin glass {indices:?}"), Bsdf::ThinDielectric(bsdf))
@@ -94,6 +112,109 @@ fn examples_after(previous: Option<&Bsdf>) -> Vec<Example> {
         Some(Bsdf::ThinDielectric(_)) => vec![opaque("null", Bsdf::Null)],
         Some(Bsdf::Null) => vec![],
     }
+}
+
+/// Plastic of a smooth coat.
+pub fn plastic(eta: f32, colours: PlasticColours) -> Example {
+    let name = if colours.nonlinear { "nonlinear plastic" } else { "plastic" };
+    opaque(name, Bsdf::Plastic(Plastic::new(SmoothCoat::new(eta), colours)))
+}
+
+fn colours(nonlinear: bool) -> PlasticColours {
+    PlasticColours { diffuse: colour(), specular: Spectrum([0.6, 1.0, 0.8, 0.0]), nonlinear }
+}
+
+/// Nothing but a rough base.
+pub const PRINCIPLED: Principled = Principled {
+    base_color: [0.6, 0.3, 0.2, 0.0],
+    roughness: 0.5,
+    anisotropic: 0.0,
+    metallic: 0.0,
+    spec_trans: 0.0,
+    eta: 1.5,
+    spec_tint: 0.0,
+    sheen: 0.0,
+    sheen_tint: 0.0,
+    flatness: 0.0,
+    clearcoat: 0.0,
+    clearcoat_gloss: 0.0,
+};
+
+/// The same of something thin.
+pub const PRINCIPLED_THIN: PrincipledThin = PrincipledThin {
+    base_color: PRINCIPLED.base_color,
+    roughness: 0.5,
+    anisotropic: 0.0,
+    spec_trans: 0.0,
+    eta: 1.5,
+    spec_tint: 0.0,
+    sheen: 0.0,
+    sheen_tint: 0.0,
+    flatness: 0.0,
+    diff_trans: 0.0,
+};
+
+fn principled_examples() -> Vec<Example> {
+    let cloth = Principled { sheen: 0.8, sheen_tint: 0.5, flatness: 0.7, ..PRINCIPLED };
+    let metal = Principled { metallic: 0.8, anisotropic: 0.7, spec_tint: 0.5, ..PRINCIPLED };
+    let lacquer = Principled { clearcoat: 0.9, metallic: 0.3, ..PRINCIPLED };
+    let glass = Principled { spec_trans: 1.0, roughness: 0.6, ..PRINCIPLED };
+    let milk = Principled {
+        spec_trans: 0.6,
+        metallic: 0.2,
+        anisotropic: 0.5,
+        spec_tint: 0.4,
+        eta: 1.33,
+        ..PRINCIPLED
+    };
+    let bubble = Principled { spec_trans: 0.8, clearcoat: 0.5, eta: 0.8, ..PRINCIPLED };
+    [
+        ("principled", PRINCIPLED),
+        ("principled cloth", cloth),
+        ("principled metal", metal),
+        // The coat is as narrow as that.
+        ("principled lacquer 0.1", lacquer),
+        ("principled glass", glass),
+        ("principled milk", milk),
+        ("principled bubble 0.1", bubble),
+    ]
+    .map(|(name, p)| {
+        let indices = if p.spec_trans > 0.0 { (p.eta, 1.0) } else { (1.0, 1.0) };
+        named(name.to_owned(), Bsdf::Principled(Principled::new(p)), indices)
+    })
+    .into()
+}
+
+fn thin_examples() -> Vec<Example> {
+    let leaf = PrincipledThin { diff_trans: 0.8, sheen: 0.5, flatness: 0.4, ..PRINCIPLED_THIN };
+    let film = PrincipledThin {
+        spec_trans: 0.7,
+        diff_trans: 1.2,
+        anisotropic: 0.5,
+        spec_tint: 0.3,
+        ..PRINCIPLED_THIN
+    };
+    let pane = PrincipledThin { spec_trans: 1.0, roughness: 0.6, eta: 1.3, ..PRINCIPLED_THIN };
+    [("thin", PRINCIPLED_THIN), ("thin leaf", leaf), ("thin film", film), ("thin pane", pane)]
+        .map(|(name, p)| opaque(name, Bsdf::PrincipledThin(PrincipledThin::new(p))))
+        .into()
+}
+
+/// Microfacets of every kind, those of [`ALPHAS`] first.
+fn facets() -> Vec<(String, Facets)> {
+    use {Distribution::*, Shadowing::*};
+    let mut all: Vec<_> = ALPHAS.iter().map(|alpha| (alpha.to_string(), Facets::ggx(*alpha))).collect();
+    for (name, distribution, shadowing, alpha) in [
+        ("Beckmann 0.02", Beckmann, Separable, [0.02; 2]),
+        ("Beckmann 0.3", Beckmann, Correlated, [0.3; 2]),
+        ("Beckmann 0.8", Beckmann, Separable, [0.8; 2]),
+        ("Beckmann 0.6×0.2", Beckmann, Separable, [0.6, 0.2]),
+        ("GGX 0.25×0.8", Ggx, Separable, [0.25, 0.8]),
+        ("GGX 0.3×0.02", Ggx, Correlated, [0.3, 0.02]),
+    ] {
+        all.push((name.to_owned(), Facets::new(distribution, shadowing, alpha)));
+    }
+    all
 }
 
 fn named(name: String, bsdf: Bsdf, indices: (f32, f32)) -> Example {
@@ -155,5 +276,6 @@ pub fn random_direction(s: &mut SampleStream) -> Vec3 {
 
 /// Whether two numbers agree to a share `relative` of the larger.
 pub fn close(a: f32, b: f32, relative: f32) -> bool {
-    a == b || (a - b).abs() <= relative * a.abs().max(b.abs())
+    // Below the range of normal numbers digits are lost.
+    a == b || (a - b).abs() <= relative * a.abs().max(b.abs()) + f32::MIN_POSITIVE
 }

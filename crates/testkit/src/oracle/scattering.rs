@@ -2,7 +2,7 @@
 
 use caustica_math::Vec3;
 use caustica_scene::bsdf::bump::MIRRORED;
-use caustica_scene::bsdf::{Bsdf, Bump, Evaluated};
+use caustica_scene::bsdf::{Bsdf, Bump, Evaluated, Plastic};
 use caustica_transport::vertex::Vertex;
 
 use super::{Vector, distance, dot, lanes, narrow, plus, wide};
@@ -28,9 +28,10 @@ fn to_local(v: &Vertex, d: Vector) -> Vector {
     [dot(d, wide(f.x)), dot(d, wide(f.y)), dot(d, wide(f.z))]
 }
 
-/// Scattering at `v` from the direction `to_light` into `to_camera`, which are known to within `blurs`.
+/// Scattering at `v`, by a Dirac lobe or not, from the direction `to_light` into `to_camera`, which are known to within
+/// `blurs`.
 pub(super) fn scatter(
-    v: &Vertex,
+    (v, smooth): (&Vertex, bool),
     [to_light, to_camera]: [Vector; 2],
     blurs: [f64; 2],
 ) -> Result<Scattering, String> {
@@ -41,7 +42,6 @@ pub(super) fn scatter(
     if cos_g * light[2] <= 0.0 || dot(normal, to_camera) * camera[2] <= 0.0 {
         return Err("a direction is on different sides of the two normals".into());
     }
-    let smooth = v.bsdf.is_delta();
     let mut s = match v.bump() {
         Some(bump) if smooth => bumped(&v.bsdf, &bump, light, camera),
         Some(bump) => Ok(rough(|l, c| bump.eval(&v.bsdf, l, c), (light, camera), blurs[0] + blurs[1])),
@@ -67,8 +67,14 @@ fn dirac(bsdf: &Bsdf, light: Vector, camera: Vector) -> Result<Scattering, Strin
             let lane = |i: usize| scale[i] * fresnel(light[2], eta[i], k[i]);
             mirror([0, 1, 2].map(lane), light, camera)
         }
-        Bsdf::Dielectric(b) => glass((b.interior_ior, b.exterior_ior), light, camera),
+        Bsdf::Dielectric(b) => {
+            let mut s = glass((b.interior_ior, b.exterior_ior), light, camera)?;
+            let factor = if light[2] * camera[2] > 0.0 { b.reflectance } else { b.transmittance };
+            (0..3).for_each(|lane| s.value[lane] *= lanes(factor)[lane]);
+            Ok(s)
+        }
         Bsdf::RoughDielectric(b) => glass(b.indices(), light, camera),
+        Bsdf::Plastic(b) => coat(b, light, camera),
         Bsdf::ThinDielectric(b) => {
             let once = fresnel(light[2].abs(), f64::from(b.interior_ior) / f64::from(b.exterior_ior), 0.0);
             let reflected = 2.0 * once / (1.0 + once);
@@ -148,6 +154,15 @@ fn mirror(reflectance: Vector, light: Vector, camera: Vector) -> Result<Scatteri
         return Err(format!("a mirror sends {light:?} to {camera:?}"));
     }
     Ok(Scattering::smooth(reflectance, 1.0, 1.0))
+}
+
+/// The Dirac lobe of plastic: Fresnel's reflectance, and the probability that it is chosen.
+fn coat(b: &Plastic, light: Vector, camera: Vector) -> Result<Scattering, String> {
+    let (fresnel, share) = (fresnel(light[2], b.eta().into(), 0.0), f64::from(b.coat_share()));
+    let mut s = mirror(lanes(b.specular()).map(|factor| factor * fresnel), light, camera)?;
+    let probability = fresnel * share / (fresnel * share + (1.0 - fresnel) * (1.0 - share));
+    (s.to_light_pdf, s.to_camera_pdf) = (probability, probability);
+    Ok(s)
 }
 
 /// The two Dirac lobes of a smooth interface.

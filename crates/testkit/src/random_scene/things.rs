@@ -3,7 +3,8 @@
 use caustica_math::{Rgb, Transform, Vec2, Vec3};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    Geometry, ImageId, MaterialId, MaterialKind, Mesh, Texture, TextureTransform,
+    Distribution, Geometry, ImageId, MaterialId, MaterialKind, Mesh, Principled, PrincipledThin, Roughness,
+    Scalar, Shadowing, Texture, TextureTransform,
 };
 
 use super::choices::Choices;
@@ -117,6 +118,15 @@ fn twin(d: &mut Description, material: MaterialId) -> usize {
     d.shapes.len() - 1
 }
 
+/// Of that α along the tangent.
+fn roughness(choices: &mut Choices, alpha: f32) -> Roughness {
+    Roughness {
+        distribution: *choices.pick(&[Distribution::Ggx, Distribution::Beckmann]),
+        shadowing: *choices.pick(&[Shadowing::Correlated, Shadowing::Separable]),
+        alpha: [alpha.into(), (alpha * choices.pick(&[1.0, 0.3, 2.0])).into()],
+    }
+}
+
 fn material(d: &mut Description, choices: &mut Choices) -> MaterialId {
     let (interior_ior, exterior_ior) = if choices.is_wild() && choices.once_in(2) {
         let iors = [1.0, 1.5, 1.000_001, 1e-3, 1e3, 1.33];
@@ -127,22 +137,78 @@ fn material(d: &mut Description, choices: &mut Choices) -> MaterialId {
     let alpha =
         if choices.is_wild() { *choices.pick(&[0.1, 1e-4, 1e-6, 1.0, 10.0]) } else { 0.01 + choices.unit() };
     let metal = |choices: &mut Choices| (choices.albedo() * 3.0 + Rgb::splat(0.05), choices.albedo() * 5.0);
-    let kind = match choices.below(7) {
+    let kind = match choices.below(11) {
         0 => MaterialKind::Diffuse { albedo: texture(false, choices) },
         1 => MaterialKind::Mirror { reflectance: choices.albedo() },
-        2 => MaterialKind::Dielectric { interior_ior, exterior_ior },
-        3 => MaterialKind::RoughDielectric { alpha, interior_ior, exterior_ior },
+        2 => MaterialKind::dielectric(interior_ior, exterior_ior),
+        3 => MaterialKind::rough_dielectric(roughness(choices, alpha), interior_ior, exterior_ior),
         4 => {
             let (eta, k) = metal(choices);
-            MaterialKind::Conductor { eta, k, reflectance: choices.albedo() }
+            MaterialKind::Conductor { eta, k, reflectance: choices.albedo().into() }
         }
         5 => {
             let (eta, k) = metal(choices);
-            MaterialKind::RoughConductor { alpha, eta, k, reflectance: choices.albedo() }
+            let roughness = roughness(choices, alpha);
+            MaterialKind::RoughConductor { roughness, eta, k, reflectance: texture(false, choices) }
         }
-        _ => MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, kd: texture(false, choices) },
+        6 => MaterialKind::Microfacet { alpha, interior_ior, exterior_ior, kd: texture(false, choices) },
+        7 => MaterialKind::Plastic {
+            interior_ior,
+            exterior_ior,
+            diffuse: texture(false, choices),
+            reflectance: texture(false, choices),
+            nonlinear: choices.once_in(2),
+        },
+        8 => MaterialKind::RoughPlastic {
+            distribution: *choices.pick(&[Distribution::Ggx, Distribution::Beckmann]),
+            alpha,
+            interior_ior,
+            exterior_ior,
+            diffuse: texture(false, choices),
+            reflectance: texture(false, choices),
+            nonlinear: choices.once_in(2),
+        },
+        9 => principled(choices, interior_ior),
+        _ => principled_thin(choices, interior_ior),
     };
     d.add_material(kind)
+}
+
+/// A share, often none.
+fn share(choices: &mut Choices) -> Scalar {
+    if choices.once_in(2) { 0.0.into() } else { choices.unit().into() }
+}
+
+fn principled(choices: &mut Choices, eta: f32) -> MaterialKind {
+    MaterialKind::Principled(Principled {
+        base_color: texture(false, choices),
+        roughness: share(choices),
+        anisotropic: share(choices),
+        metallic: share(choices),
+        spec_trans: share(choices),
+        eta,
+        spec_tint: share(choices),
+        sheen: share(choices),
+        sheen_tint: share(choices),
+        flatness: share(choices),
+        clearcoat: share(choices),
+        clearcoat_gloss: share(choices),
+    })
+}
+
+fn principled_thin(choices: &mut Choices, eta: f32) -> MaterialKind {
+    MaterialKind::PrincipledThin(PrincipledThin {
+        base_color: texture(false, choices),
+        roughness: share(choices),
+        anisotropic: share(choices),
+        spec_trans: share(choices),
+        eta: eta.into(),
+        spec_tint: share(choices),
+        sheen: share(choices),
+        sheen_tint: share(choices),
+        flatness: share(choices),
+        diff_trans: (2.0 * choices.unit()).into(),
+    })
 }
 
 /// A texture of light or of reflectance.

@@ -110,12 +110,15 @@ impl Kernel<'_> {
             {
                 sum += self.found(sample, (&chain, edges), lamp, sink);
             }
-            if edges == self.max_edges || vertex.is_connectible() {
+            if edges == self.max_edges || !vertex.bsdf.has_dirac() {
                 break;
             }
             let roulette = edges >= self.roulette_start;
             let bounce = numbers.bounce(number, &vertex, roulette);
-            let Some((direction, s, _)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
+            let Some((direction, s, delta)) = vertex.sample(Walk::FromCamera, bounce.u) else { break };
+            if !delta {
+                break;
+            }
             chain.radiance_scale *= vertex.radiance_scale(direction);
             chain.left *= s.value * (1.0 / s.forward.0);
             chain.throughput *= s.value * (1.0 / s.forward.0);

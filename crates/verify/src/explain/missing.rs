@@ -9,7 +9,6 @@ use caustica_math::{Spectrum, Vec3, Wavelengths};
 use caustica_render::{Control, available_threads};
 use caustica_scene::Scene;
 use caustica_scene::description::Crop;
-use caustica_transport::vertex::Vertex;
 use caustica_transport::{Kernel, Scratch, Settings, Subpaths};
 use serde::Serialize;
 
@@ -177,10 +176,13 @@ fn arrivals(scene: &Scene, paths: &Subpaths<'_>, photons: &mut Vec<Photon>) {
         LampEnd::Surface | LampEnd::Environment => return,
     };
     for (i, v) in paths.light.iter().enumerate() {
-        let before = i.checked_sub(1).map(|j| paths.light[j].is_connectible());
+        let before = i.checked_sub(1).map(|j| !paths.light[j].delta);
         if v.is_connectible() {
-            // Next-event estimation or inner connections reach whatever follows.
+            // Next-event estimation or inner connections reach whatever follows, but by a Dirac lobe.
             if before.unwrap_or(sought) {
+                if v.delta {
+                    continue;
+                }
                 return;
             }
             photons.push(Photon {
@@ -188,7 +190,7 @@ fn arrivals(scene: &Scene, paths: &Subpaths<'_>, photons: &mut Vec<Photon>) {
                 normal: v.point.normal,
                 to_light: v.prev,
                 flux: v.throughput,
-                vertices: paths.light[..=i].iter().map(Vertex::is_connectible).collect(),
+                vertices: paths.light[..i].iter().map(|v| !v.delta).chain([true]).collect(),
                 lamp: emission.point.light,
                 caster: paths.light[0].point.shape,
             });
@@ -202,7 +204,7 @@ fn gather_at(
     (cells, near, limit): (&Cells, f32, usize),
     sums: &mut BTreeMap<String, Sources>,
 ) {
-    let Some(i) = paths.eye.iter().position(Vertex::is_connectible) else { return };
+    let Some(i) = paths.eye.iter().position(|v| v.is_connectible() && !v.delta) else { return };
     if i == 0 {
         return;
     }

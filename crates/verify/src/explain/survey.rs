@@ -11,7 +11,7 @@ use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink, Strategy
 
 use super::Question;
 use super::noise::{Layers, Noise};
-use crate::class::{PathClass, surface_vertices};
+use crate::class::PathClass;
 use crate::grid::Grid;
 use crate::jobs;
 use crate::verify::VerifyError;
@@ -248,8 +248,7 @@ impl Sink for Listener<'_, '_> {
         let carried = self.survey.classes.entry(class).or_default();
         carried.light += luminance;
         *carried.lamps.entry(c.path.lamp.light).or_default() += luminance;
-        let vertices = surface_vertices(self.kernel.scene(), c);
-        let (caster, seen_in) = mirrors(vertices.map(|v| (v.is_connectible(), v.point.shape)));
+        let (caster, seen_in) = mirrors(c.events().map(|(v, dirac)| (!dirac, v.point.shape)));
         for (sums, shape) in [(&mut carried.casters, caster), (&mut carried.seen_in, seen_in)] {
             if let Some(shape) = shape {
                 *sums.entry(shape).or_default() += luminance;
