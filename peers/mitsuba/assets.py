@@ -94,6 +94,7 @@ def images():
     write("colours.png", numpy.rint(255.0 * numpy.stack(waves, -1)).astype("u1"))
     y, x = numpy.mgrid[0:32, 0:32] * (2.0 * numpy.pi / 32.0)
     write("bumps.png", numpy.rint(127.5 + 120.0 * numpy.sin(x) * numpy.cos(2.0 * y)).astype("u1")[..., None])
+    write("alphas.png", numpy.rint(64.0 + 38.0 * numpy.sin(x) * numpy.cos(y)).astype("u1")[..., None])
     slopes = numpy.stack([-0.5 * numpy.cos(x) * numpy.cos(y), 0.5 * numpy.sin(x) * numpy.sin(y), numpy.ones_like(x)], -1)
     slopes /= numpy.linalg.norm(slopes, axis=-1, keepdims=True)
     write("normals.png", numpy.rint(127.5 + 127.5 * slopes).astype("u1"))

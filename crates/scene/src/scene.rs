@@ -6,9 +6,9 @@ use caustica_math::{Frame, MemoryLimit, SampleStream, Spectrum, StreamId, Vec3, 
 
 use crate::bsdf::Bsdf;
 use crate::bvh::{Bvh, Hit, Ray, TreeQuality};
-use crate::camera::Camera;
+use crate::camera::{Camera, film_settings};
 use crate::casters::Casters;
-use crate::description::{Description, FilmSettings, Filter, Image, ImageId, LightKind, MaterialId, Texture};
+use crate::description::{Description, FilmSettings, Image, ImageId, LightKind, MaterialId, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::light::{AreaLight, Light, LightPoint, LightQuery, Lights, Surroundings};
 use crate::material::{FlatMaterial, bsdf_at, flatten};
@@ -68,7 +68,7 @@ impl Scene {
         memory: MemoryLimit,
     ) -> Result<(Self, Vec<Diagnostic>), Diagnostic> {
         let mut warnings = Vec::new();
-        let film = film_of(&description, &mut warnings);
+        let film = film_settings(&description, &mut warnings);
         memory::check(&description, tree, memory)?;
         references::check(&description)?;
         figures::check(&description)?;
@@ -337,15 +337,4 @@ impl Scene {
     pub fn bounding_sphere(&self) -> (Vec3, f32) {
         (self.center, self.radius)
     }
-}
-
-/// The film. A meter's has no use for a filter: all pixels show the same.
-fn film_of(description: &Description, warnings: &mut Vec<Diagnostic>) -> FilmSettings {
-    let (mut film, pixel) = (description.film.clone(), Filter::Box { radius: 0.5 });
-    if description.camera.kind.is_meter() && film.filter != pixel {
-        film.filter = pixel;
-        let message = "a meter has no use for a pixel filter: each pixel is measured by itself";
-        warnings.push(Diagnostic::warning(message).at(description.camera.origin.clone()));
-    }
-    film
 }

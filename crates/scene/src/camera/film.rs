@@ -2,7 +2,8 @@
 
 use caustica_math::Vec2;
 
-use crate::description::FilmSettings;
+use crate::description::{Description, FilmSettings, Filter};
+use crate::diagnostic::Diagnostic;
 
 /// The size of the full picture in pixels, and the place on it where the camera looks.
 #[derive(Clone, Copy, Debug)]
@@ -67,3 +68,14 @@ impl Film {
 
 /// In sizes of the picture. Beyond, pixels could not be told apart by their places.
 const FARTHEST_SHIFT: f32 = 1e3;
+
+/// The film. A meter's has no use for a filter: all pixels show the same.
+pub(crate) fn film_settings(description: &Description, warnings: &mut Vec<Diagnostic>) -> FilmSettings {
+    let (mut film, pixel) = (description.film.clone(), Filter::Box { radius: 0.5 });
+    if description.camera.kind.is_meter() && film.filter != pixel {
+        film.filter = pixel;
+        let message = "a meter has no use for a pixel filter: each pixel is measured by itself";
+        warnings.push(Diagnostic::warning(message).at(description.camera.origin.clone()));
+    }
+    film
+}

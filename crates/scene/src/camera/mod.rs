@@ -19,6 +19,7 @@ use crate::description::{self, CameraKind, FilmSettings};
 use crate::diagnostic::Diagnostic;
 use crate::surface::{Surfaces, is_reachable, unreachable};
 use film::Film;
+pub(crate) use film::film_settings;
 use lens::Lens;
 use meter::Patch;
 
