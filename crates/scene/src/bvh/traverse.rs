@@ -239,7 +239,7 @@ fn test_leaf<L: Lanes, const P: bool>(
     (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
     ray: &Ray,
-    lanes: &LaneRay<L, P>,
+    lanes: &LaneRay<'_, L, P>,
     best: &mut Best<L>,
 ) {
     if !leaf.holds_spheres() {
@@ -323,7 +323,7 @@ fn is_hit<L: Lanes, const P: bool>(
     (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
     ray: &Ray,
-    lanes: &LaneRay<L, P>,
+    lanes: &LaneRay<'_, L, P>,
 ) -> bool {
     if leaf.holds_spheres() {
         return is_sphere_hit(bvh, leaf, ray);
