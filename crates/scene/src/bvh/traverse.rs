@@ -100,6 +100,8 @@ fn prefetch(nodes: &[Node], blocks: &[TriangleBlock], child: Child) {
             unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(64 * line)) };
         }
     }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (nodes, blocks, child);
 }
 
 /// The first hit along the ray.
