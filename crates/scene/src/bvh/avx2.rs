@@ -33,54 +33,63 @@ pub(super) fn occluded(bvh: &Bvh, ray: &Ray) -> bool {
 #[derive(Clone, Copy)]
 struct Avx(__m256);
 
+/// What lanes in one AVX register have in common, whatever else the CPU has.
+macro_rules! arithmetic {
+    () => {
+        #[inline(always)]
+        fn splat(v: f32) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_set1_ps(v) })
+        }
+        #[inline(always)]
+        fn load(v: &[f32; 8]) -> Self {
+            // SAFETY: see the type; the array has eight elements, and need not be aligned.
+            Self(unsafe { _mm256_loadu_ps(v.as_ptr()) })
+        }
+        #[inline(always)]
+        fn store(self) -> Eight {
+            let mut v = Eight([0.0; 8]);
+            // SAFETY: see the type; the array has eight elements and is aligned.
+            unsafe { _mm256_store_ps(v.0.as_mut_ptr(), self.0) };
+            v
+        }
+        #[inline(always)]
+        fn add(self, o: Self) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_add_ps(self.0, o.0) })
+        }
+        #[inline(always)]
+        fn sub(self, o: Self) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_sub_ps(self.0, o.0) })
+        }
+        #[inline(always)]
+        fn mul(self, o: Self) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_mul_ps(self.0, o.0) })
+        }
+        #[inline(always)]
+        fn div(self, o: Self) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_div_ps(self.0, o.0) })
+        }
+        #[inline(always)]
+        fn min(self, o: Self) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_min_ps(self.0, o.0) })
+        }
+        #[inline(always)]
+        fn max(self, o: Self) -> Self {
+            // SAFETY: see the type.
+            Self(unsafe { _mm256_max_ps(self.0, o.0) })
+        }
+    };
+}
+pub(super) use arithmetic;
+
 impl Lanes for Avx {
-    #[inline(always)]
-    fn splat(v: f32) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_set1_ps(v) })
-    }
-    #[inline(always)]
-    fn load(v: &[f32; 8]) -> Self {
-        // SAFETY: see `Avx`; the array has eight elements, and need not be aligned.
-        Self(unsafe { _mm256_loadu_ps(v.as_ptr()) })
-    }
-    #[inline(always)]
-    fn store(self) -> Eight {
-        let mut v = Eight([0.0; 8]);
-        // SAFETY: see `Avx`; the array has eight elements and is aligned.
-        unsafe { _mm256_store_ps(v.0.as_mut_ptr(), self.0) };
-        v
-    }
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_add_ps(self.0, o.0) })
-    }
-    #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_sub_ps(self.0, o.0) })
-    }
-    #[inline(always)]
-    fn mul(self, o: Self) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_mul_ps(self.0, o.0) })
-    }
-    #[inline(always)]
-    fn div(self, o: Self) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_div_ps(self.0, o.0) })
-    }
-    #[inline(always)]
-    fn min(self, o: Self) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_min_ps(self.0, o.0) })
-    }
-    #[inline(always)]
-    fn max(self, o: Self) -> Self {
-        // SAFETY: see `Avx`.
-        Self(unsafe { _mm256_max_ps(self.0, o.0) })
-    }
+    arithmetic!();
+
     #[inline(always)]
     fn le(self, o: Self) -> u32 {
         // SAFETY: see `Avx`.

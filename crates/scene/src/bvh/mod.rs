@@ -1,7 +1,7 @@
 //! The ray-intersection tree: an eight-wide bounding volume hierarchy over triangles and spheres.
 //!
 //! The tree is built by binned surface-area heuristic (`build`) and walked by `traverse`, eight boxes or
-//! triangles at a time: with AVX2 where the CPU has it, else by halves. What a ray hits depends neither on the
+//! triangles at a time: with AVX-512VL or AVX2 where the CPU has it, else by halves. What a ray hits depends neither on the
 //! CPU nor on the shape of the tree: boxes are conservative, no operation is fused, and of two surfaces at the
 //! same distance the one with the lower id is hit. Groups have trees of their own ([`Instances`]).
 
@@ -216,7 +216,7 @@ impl Kernels {
         let special =
             [avx512::is_available().then_some(Self::Avx512), avx2::is_available().then_some(Self::Avx2)];
         #[cfg(not(target_arch = "x86_64"))]
-        let special = [];
+        let special: [Option<Self>; 0] = [];
         special.into_iter().flatten().chain([Self::Portable])
     }
 

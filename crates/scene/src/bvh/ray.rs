@@ -10,9 +10,9 @@ use super::lanes::Lanes;
 /// is zero or almost.
 ///
 /// All that has three parts is by the axes as the ray sees them: the last is the one along which it moves most.
-pub(super) struct LaneRay<L, const PARALLEL: bool> {
+pub(super) struct LaneRay<'a, L, const PARALLEL: bool> {
     /// As it was given.
-    source: Ray,
+    source: &'a Ray,
     origin: [L; 3],
     /// Where the ray starts for planes that are left, if it is `PARALLEL`.
     far_origin: [L; 3],
@@ -76,9 +76,9 @@ const ROWS: [[Rows; 8]; 3] = {
     rows
 };
 
-impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
+impl<'a, L: Lanes, const PARALLEL: bool> LaneRay<'a, L, PARALLEL> {
     #[inline(always)]
-    pub(super) fn new(ray: &Ray) -> Self {
+    pub(super) fn new(ray: &'a Ray) -> Self {
         let (d, o) = (ray.direction.to_array(), ray.origin.to_array());
         let (mut divisor, mut far_origin) = (d, o);
         if PARALLEL {
@@ -94,23 +94,24 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
         }
         let divisor = f32x4::new([divisor[0], divisor[1], divisor[2], 1.0]);
         let inverse = f32x4::splat(1.0) / divisor;
-        let far_inverse = (inverse * f32x4::splat(FAR)).to_array();
-        let inverse = inverse.to_array();
         // Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
         let [x, y, z] = d.map(f32::abs);
         let larger = if x > y { x } else { y };
         let largest = if larger > z { usize::from(x <= y) } else { 2 };
         let rows = &ROWS[largest][divisor.to_bitmask() as usize & 7];
-        let pick = |v: [f32; 3]| rows.axes.map(|axis| [v[0], v[1], v[2], 0.0][axis as usize & 3]);
-        let d = pick(d);
-        let inverse = pick([inverse[0], inverse[1], inverse[2]]);
+        let axes = rows.axes.map(|axis| axis as usize & 3);
+        let far_inverse = (inverse * f32x4::splat(FAR)).to_array();
+        let (inverse, d, o) = (inverse.to_array(), [d[0], d[1], d[2], 0.0], [o[0], o[1], o[2], 0.0]);
+        let far_o = [far_origin[0], far_origin[1], far_origin[2], 0.0];
+        let along = inverse[axes[2]];
+        let origin = pick(&o, axes);
         Self {
-            source: *ray,
-            origin: splat(pick(o)),
-            far_origin: splat(pick(far_origin)),
-            inverse: splat(inverse),
-            far_inverse: splat(pick([far_inverse[0], far_inverse[1], far_inverse[2]])),
-            shear: [L::splat(d[0] * inverse[2]), L::splat(d[1] * inverse[2])],
+            source: ray,
+            origin,
+            far_origin: if PARALLEL { pick(&far_o, axes) } else { origin },
+            inverse: pick(&inverse, axes),
+            far_inverse: pick(&far_inverse, axes),
+            shear: [L::splat(d[axes[0]] * along), L::splat(d[axes[1]] * along)],
             rows: *rows,
         }
     }
@@ -146,7 +147,6 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     /// [`LaneRay::enter`] for the triangles' own boxes. The same values in another way: which planes are entered
     /// first is found lane by lane, as a choice by the ray's signs is a jump that nobody can predict.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "the axis numbers many arrays")]
     pub(super) fn enter_triangles(&self, corners: &[[[f32; 8]; 3]; 3], t_max: L) -> (u32, L) {
         let (mut t_near, mut t_far) = (L::splat(0.0), t_max);
         for axis in 0..3 {
@@ -183,7 +183,7 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     /// The ray as it was given.
     #[inline(always)]
     pub(super) fn source(&self) -> &Ray {
-        &self.source
+        self.source
     }
 
     /// One over the direction along z.
@@ -193,9 +193,10 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     }
 }
 
+/// Three of four numbers, each in all lanes.
 #[inline(always)]
-fn splat<L: Lanes>(v: [f32; 3]) -> [L; 3] {
-    [L::splat(v[0]), L::splat(v[1]), L::splat(v[2])]
+fn pick<L: Lanes>(from: &[f32; 4], [x, y, z]: [usize; 3]) -> [L; 3] {
+    [L::splat(from[x & 3]), L::splat(from[y & 3]), L::splat(from[z & 3])]
 }
 
 /// The row of numbers that begins with that one.

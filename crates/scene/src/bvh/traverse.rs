@@ -98,6 +98,8 @@ fn prefetch(nodes: &[Node], blocks: &[TriangleBlock], child: Child) {
             unsafe { _mm_prefetch::<_MM_HINT_T0>(first.wrapping_add(64 * line)) };
         }
     }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (nodes, blocks, child);
 }
 
 /// The first hit along the ray.
@@ -237,7 +239,7 @@ fn finish<L: Lanes>(blocks: &[TriangleBlock], ray: &Ray, best: &Best<L>, solid: 
 fn test_leaf<L: Lanes, const P: bool>(
     (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
-    (ray, lanes): (&Ray, &LaneRay<L, P>),
+    (ray, lanes): (&Ray, &LaneRay<'_, L, P>),
     best: &mut Best<L>,
     solid: &mut Option<Hit>,
 ) {
@@ -341,7 +343,7 @@ fn is_hit<L: Lanes, const P: bool>(
     (bvh, blocks): (&Bvh, &[TriangleBlock]),
     leaf: Child,
     ray: &Ray,
-    lanes: &LaneRay<L, P>,
+    lanes: &LaneRay<'_, L, P>,
 ) -> bool {
     if leaf.holds_spheres() {
         return is_solid_hit(bvh, leaf, ray);

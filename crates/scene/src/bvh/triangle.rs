@@ -123,7 +123,7 @@ impl TriangleBlock {
     /// Products and differences are not fused, so the value of an edge shared by two triangles is exactly
     /// the negative of the other's: no ray passes between them.
     #[inline(always)]
-    fn test<L: Lanes, const P: bool>(&self, ray: &LaneRay<L, P>, t_max: f32) -> Option<Crossings<L>> {
+    fn test<L: Lanes, const P: bool>(&self, ray: &LaneRay<'_, L, P>, t_max: f32) -> Option<Crossings<L>> {
         let [ax, ay, az] = ray.shear(&self.corners[0]);
         let [bx, by, bz] = ray.shear(&self.corners[1]);
         let [cx, cy, cz] = ray.shear(&self.corners[2]);
@@ -175,7 +175,7 @@ impl TriangleBlock {
     /// edge. By leaving out what its own box would hide, what is hit does not depend on the boxes in which
     /// the tree keeps it.
     #[inline(always)]
-    fn clip<L: Lanes, const P: bool>(&self, ray: &LaneRay<L, P>, t: L, t_max: L) -> (u32, L) {
+    fn clip<L: Lanes, const P: bool>(&self, ray: &LaneRay<'_, L, P>, t: L, t_max: L) -> (u32, L) {
         let (mask, entry) = ray.enter_triangles(&self.corners, t_max);
         let t = t.max(entry);
         (t.le(t_max) & mask, t)
@@ -195,7 +195,7 @@ impl TriangleBlock {
     pub(super) fn closest<L: Lanes, const P: bool>(
         &self,
         index: usize,
-        ray: &LaneRay<L, P>,
+        ray: &LaneRay<'_, L, P>,
         best: &mut Best<L>,
     ) {
         let Some(Crossings { mut mask, t, edges, det }) = self.test(ray, best.t) else { return };
@@ -219,7 +219,7 @@ impl TriangleBlock {
 
     /// Whether any triangle is hit.
     #[inline(always)]
-    pub(super) fn any<L: Lanes, const P: bool>(&self, ray: &LaneRay<L, P>, t_max: f32) -> bool {
+    pub(super) fn any<L: Lanes, const P: bool>(&self, ray: &LaneRay<'_, L, P>, t_max: f32) -> bool {
         self.test(ray, t_max).is_some()
     }
 }

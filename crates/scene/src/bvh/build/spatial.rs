@@ -6,6 +6,7 @@ use caustica_math::Vec3;
 use super::Primitives;
 use super::clip::{cut, is_divisible};
 use super::reference::{Extent, Extents, Reference};
+use super::split::weight;
 
 /// How many more references there may be than primitives.
 const MORE_REFERENCES: f64 = 0.3;
@@ -249,7 +250,7 @@ impl Slabs {
             if count == 0 || others == 0 || (count + others) as usize > room {
                 continue;
             }
-            let cost = extent.half_area() * count as f32 + beyond.half_area() * others as f32;
+            let cost = extent.half_area() * weight(count) + beyond.half_area() * weight(others);
             if best.as_ref().is_none_or(|b| cost < b.cost) {
                 let (sides, counts) = ([extent, beyond], [count, others]);
                 let position = self.plane(axis, i);

@@ -3,6 +3,7 @@
 use wide::f32x4;
 
 use super::super::Bounds;
+use super::super::triangle::BLOCK;
 use super::Primitives;
 use super::collapse::{Costs, INSTANCE, Tree};
 use super::reference::{Extent, Extents, Reference};
@@ -134,6 +135,13 @@ fn partition(references: &mut [Reference], left: impl Fn(&Reference) -> bool) ->
     middle
 }
 
+/// What that many triangles are expected to cost: between their number and that of the lanes that they will take, as
+/// nearly full blocks are worth having.
+#[inline(always)]
+pub(super) fn weight(count: u32) -> f32 {
+    (count + count.next_multiple_of(BLOCK as u32)) as f32 * 0.5
+}
+
 /// A plane between bins.
 struct Plane {
     cost: f32,
@@ -199,7 +207,7 @@ impl<const N: usize> Bins<N> {
             if sum.1 == 0 || beyond == 0 {
                 continue;
             }
-            let cost = sum.0.half_area() * sum.1 as f32 + area * beyond as f32;
+            let cost = sum.0.half_area() * weight(sum.1) + area * weight(beyond);
             if best.is_none_or(|b| cost < b.0) {
                 best = Some((cost, i));
             }
