@@ -108,7 +108,7 @@ fn run(name: &str, scene: &Scene, settings: Settings, samples: u32) -> (Counts, 
 }
 
 /// Sets of which some are and some are no unions of classes.
-const SETS: [&str; 7] = ["all", "s=0", "t>=2", "s=0;s=1&t>=2", "t=1", "2,3", "s>=2&t>=2"];
+const SETS: [&str; 8] = ["all", "s=0", "s>=1", "t>=2", "s=0;s=1&t>=2", "t=1", "2,3", "s>=2&t>=2"];
 
 fn verify(name: &str, description: Description) {
     verify_without(|_| false, name, description);
