@@ -104,6 +104,10 @@ fn run(name: &str, scene: &Scene, settings: Settings, samples: u32) -> (Counts, 
     let right: u32 = checked.values().sum();
     let first = wrong.iter().take(8).cloned().collect::<Vec<_>>().join("\n");
     assert!(wrong.is_empty(), "{what}: {} wrong, {right} right:\n{first}", wrong.len());
+    assert!(
+        checked.keys().all(|s| s.s + s.t <= DEPTH + 1),
+        "{what}: paths of more than {DEPTH} edges: {checked:?}"
+    );
     (checked, skipped)
 }
 
