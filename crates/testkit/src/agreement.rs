@@ -72,8 +72,10 @@ impl Sink for Blocks<'_, '_> {
 
 /// A picture's estimate: the luminance of each block, over passes of one sample a pixel.
 ///
-/// Passes of stratified samples depend on each other: the mean's variance is less than what passes tell of it. So
-/// tests by that variance err to the safe side, as far as they would with independent samples.
+/// Passes of stratified samples depend on each other: the mean's variance is less than what passes tell of it, so that
+/// tests by that variance err to the safe side. Light tracing alone is the exception: over twelve seeds, the means of its
+/// whole pictures had 1.2 to 1.6 times the variance that passes tell. With fresh seeds its tests fail more often than
+/// stated.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     /// Means and variances over the passes.

@@ -114,11 +114,15 @@ fn run(name: &str, scene: &Scene, settings: Settings, samples: u32) -> (Counts, 
     let right: u32 = checked.values().sum();
     let first = wrong.iter().take(8).cloned().collect::<Vec<_>>().join("\n");
     assert!(wrong.is_empty(), "{what}: {} wrong, {right} right:\n{first}", wrong.len());
+    assert!(
+        checked.keys().all(|s| s.s + s.t <= DEPTH + 1),
+        "{what}: paths of more than {DEPTH} edges: {checked:?}"
+    );
     (checked, skipped)
 }
 
 /// Sets of which some are and some are no unions of classes.
-const SETS: [&str; 7] = ["all", "s=0", "t>=2", "s=0;s=1&t>=2", "t=1", "2,3", "s>=2&t>=2"];
+const SETS: [&str; 8] = ["all", "s=0", "s>=1", "t>=2", "s=0;s=1&t>=2", "t=1", "2,3", "s>=2&t>=2"];
 
 fn verify(name: &str, description: Description) {
     verify_without(|_| false, name, description);
