@@ -182,6 +182,6 @@ fn turned_textures() {
         }
     }
     let flat = "<bsdf type='diffuse'><texture type='§checkerboard' name='reflectance'>\
-        <transform name='to_uv'><scale x='0' y='1'/></transform></texture></bsdf>";
+        <transform name='to_uv'><rotate angle='90' x='1'/></transform></texture></bsdf>";
     warned(&shape(flat), "cannot be inverted");
 }
