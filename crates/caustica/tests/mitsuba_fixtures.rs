@@ -154,6 +154,13 @@ fn textured_diffuse() {
     agrees(scene, "test_textured_diffuse", 128, Some(Integrator::Bdpt));
 }
 
+#[test]
+fn bump_map() {
+    let scene = "bsdf_spheres/test_bumpmap_path.xml";
+    agrees(scene, "test_bumpmap", 64, None);
+    agrees(scene, "test_bumpmap", 128, Some(Integrator::Bdpt));
+}
+
 /// Its roughness is Beckmann's, and GGX here: what passes is not all.
 #[test]
 fn rough_glass() {
