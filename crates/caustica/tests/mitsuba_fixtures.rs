@@ -180,8 +180,8 @@ fn textured_diffuse() {
 #[test]
 fn rough_glass() {
     let scene = "bsdf_spheres/test_roughdielectric_path.xml";
-    agrees(scene, "test_roughdielectric", 32, None);
-    agrees(scene, "test_roughdielectric", 32, Some(Integrator::Bdpt));
+    agrees(scene, "test_roughdielectric", 256, None);
+    agrees(scene, "test_roughdielectric", 256, Some(Integrator::Bdpt));
 }
 
 /// Twelve materials, by direct light.
