@@ -1,9 +1,10 @@
-//! Materials made of others, for the scenes of tests.
+//! Materials of many lobes and materials made of others, for the scenes of tests.
 
 use caustica_math::Rgb;
 use caustica_scene::Description;
 use caustica_scene::description::{
-    BumpRule, Image, MaterialId, MaterialKind, Texture, TextureTransform, Wrapper,
+    BumpRule, Distribution, Image, MaterialId, MaterialKind, Principled, PrincipledThin, Roughness, Scalar,
+    Shadowing, Texture, TextureTransform, Wrapper,
 };
 
 use crate::build::{diffuse, glass};
@@ -48,6 +49,64 @@ pub fn normal_map(d: &mut Description, lean: f32, rule: BumpRule, inner: Materia
     let image = d.add_image(Image { width: 8, height: 8, pixels });
     let normals = Texture::Image { image, transform: TextureTransform::default() };
     wrapped(d, Wrapper::NormalMap { normals, rule, inner })
+}
+
+/// Plastic of a smooth coat: a Dirac lobe beside a smooth one.
+pub fn smooth_plastic(nonlinear: bool) -> MaterialKind {
+    let (interior_ior, exterior_ior) = (1.7, 1.0);
+    let (diffuse, reflectance) = (Rgb::new(0.7, 0.5, 0.3).into(), Rgb::new(0.8, 0.9, 1.0).into());
+    MaterialKind::Plastic { interior_ior, exterior_ior, diffuse, reflectance, nonlinear }
+}
+
+/// Plastic of a rough coat.
+pub fn rough_plastic() -> MaterialKind {
+    MaterialKind::RoughPlastic {
+        distribution: Distribution::Beckmann,
+        alpha: 0.2,
+        interior_ior: 1.5,
+        exterior_ior: 1.0,
+        diffuse: Rgb::new(0.7, 0.5, 0.3).into(),
+        reflectance: Rgb::new(0.8, 0.9, 1.0).into(),
+        nonlinear: true,
+    }
+}
+
+/// Beckmann's microfacets, with different roughnesses in the two directions.
+pub fn brushed(alpha: [f32; 2]) -> Roughness {
+    let alpha = alpha.map(Scalar::Constant);
+    Roughness { distribution: Distribution::Beckmann, shadowing: Shadowing::Separable, alpha }
+}
+
+/// A principled material of all lobes.
+pub fn principled() -> MaterialKind {
+    MaterialKind::Principled(Principled {
+        base_color: Rgb::new(0.7, 0.5, 0.3).into(),
+        roughness: 0.5.into(),
+        anisotropic: 0.6.into(),
+        metallic: 0.3.into(),
+        spec_trans: 0.5.into(),
+        eta: 1.4,
+        spec_tint: 0.3.into(),
+        sheen: 0.5.into(),
+        sheen_tint: 0.5.into(),
+        flatness: 0.4.into(),
+        clearcoat: 0.5.into(),
+        clearcoat_gloss: 0.0.into(),
+    })
+}
+
+/// A principled material of something thin, of all lobes.
+pub fn principled_thin() -> MaterialKind {
+    MaterialKind::PrincipledThin(PrincipledThin {
+        base_color: Rgb::new(0.7, 0.5, 0.3).into(),
+        anisotropic: 0.4.into(),
+        spec_trans: 0.4.into(),
+        spec_tint: 0.3.into(),
+        sheen: 0.5.into(),
+        flatness: 0.4.into(),
+        diff_trans: 0.9.into(),
+        ..PrincipledThin::default()
+    })
 }
 
 /// Thin glass.

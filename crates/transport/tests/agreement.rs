@@ -3,10 +3,12 @@
 
 use caustica_math::{Filter, Rgb, Transform};
 use caustica_scene::Description;
-use caustica_scene::description::{BumpRule, CameraKind, Crop, Geometry, LightKind, MaterialId, Texture};
+use caustica_scene::description::{
+    BumpRule, CameraKind, Crop, Geometry, LightKind, MaterialId, MaterialKind, Texture,
+};
 use caustica_testkit::agreement::{Estimate, Plan, agree, estimate, flatten};
-use caustica_testkit::build::quad;
-use caustica_testkit::materials::{bump, frosted, leaves, normal_map, thin_glass, two_sided};
+use caustica_testkit::build::{quad, sphere};
+use caustica_testkit::materials::*;
 use caustica_testkit::scenes::*;
 use caustica_testkit::ways::{ODD, Way, Way::*};
 
@@ -64,6 +66,28 @@ fn shading_normals() {
     check("smooth glass", smooth_mesh(glass_kind(false)), 600, &[Bdpt, Naive, Path]);
     check("smooth rough glass", smooth_mesh(rough_glass_kind()), 400, &[Bdpt, Naive, Path, Light]);
     check("smooth metal", smooth_mesh(metal_kind(Some(0.2))), 400, &[Bdpt, Path, Light]);
+}
+
+/// All kinds of lobes in one box.
+fn lobes(kinds: impl IntoIterator<Item = MaterialKind>) -> Description {
+    let mut d = open_box();
+    for (i, kind) in kinds.into_iter().enumerate() {
+        let (x, y) = ((i % 2) as f32, (i / 2 % 2) as f32);
+        let m = d.add_material(kind);
+        sphere(&mut d, [0.9 * x - 0.45, 0.9 * y - 0.55, 0.3 * x - 0.2 * y], 0.4, m);
+    }
+    d
+}
+
+#[test]
+fn lobes_beside_one_another() {
+    let MaterialKind::Conductor { eta, k, .. } = metal_kind(None) else { panic!() };
+    let brushed = MaterialKind::rough_conductor(brushed([0.15, 0.5]), eta, k);
+    let rough = [rough_plastic(), principled(), principled_thin(), brushed];
+    check("rough lobes", lobes(rough), 600, &[Bdpt, Naive, Path, Emitters, Light, Power, NoLightImage, ODD]);
+    let mixed = [smooth_plastic(false), rough_plastic(), principled(), smooth_plastic(true)];
+    // (Without a light image what plastic mirrors onto others is rare and bright: more than a t-test can do with.)
+    check("smooth plastic", lobes(mixed), 600, &[Bdpt, Naive, Path, Power, ODD]);
 }
 
 /// The box with a screen of some material before its ball, and another one below the lamp.

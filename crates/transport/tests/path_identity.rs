@@ -8,14 +8,13 @@ use std::collections::BTreeMap;
 
 use caustica_math::{Filter, Rgb, Transform, Vec2};
 use caustica_scene::description::{
-    BumpRule, CameraKind, Crop, Distribution, EnvironmentRows, Geometry, Image, ImageId, LightKind,
-    MaterialId, MaterialKind, Principled, PrincipledThin, Roughness, Scalar, Shadowing, Texture,
-    TextureTransform,
+    BumpRule, CameraKind, Crop, EnvironmentRows, Geometry, Image, ImageId, LightKind, MaterialId,
+    MaterialKind, Roughness, Texture, TextureTransform,
 };
 use caustica_scene::{Description, Scene};
 use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{add, ellipsoid, emit, glass, light, look, point_light, quad, scene, sphere};
-use caustica_testkit::materials::{bump, frosted, leaves, normal_map, thin_glass, two_sided};
+use caustica_testkit::materials::*;
 use caustica_testkit::oracle::{judge, lanes};
 use caustica_testkit::scenes::inside_out;
 use caustica_testkit::seed::seed;
@@ -225,12 +224,6 @@ fn rough_dielectric(interior_ior: f32, exterior_ior: f32) -> MaterialKind {
     MaterialKind::rough_dielectric(Roughness::ggx(0.25), interior_ior, exterior_ior)
 }
 
-/// Beckmann's microfacets, with different roughnesses in the two directions.
-fn brushed(alpha: [f32; 2]) -> Roughness {
-    let alpha = alpha.map(Scalar::Constant);
-    Roughness { distribution: Distribution::Beckmann, shadowing: Shadowing::Separable, alpha }
-}
-
 fn rough_gold(brushed: Roughness) -> MaterialKind {
     let MaterialKind::Conductor { eta, k, reflectance } = gold(0.0) else { unreachable!() };
     MaterialKind::RoughConductor { roughness: brushed, eta, k, reflectance }
@@ -271,12 +264,12 @@ fn rough_materials() {
     verify("no rough interface", ball(rough_dielectric(1.3, 1.3)));
     verify("rough gold", ball(gold(0.2)));
     verify("sharp gold", ball(gold(0.06)));
-    let brushed = brushed([0.15, 0.4]);
-    verify("brushed gold", ball(rough_gold(brushed)));
+    verify("brushed gold", ball(rough_gold(brushed([0.15, 0.4]))));
     let (reflectance, transmittance) = (Rgb([0.9, 0.5, 0.7]).into(), Rgb([0.4, 0.8, 1.0]).into());
-    let (roughness, interior_ior, exterior_ior) = (brushed, 1.5, 1.0);
+    let (interior_ior, exterior_ior) = (1.5, 1.0);
     let tinted = MaterialKind::Dielectric { interior_ior, exterior_ior, reflectance, transmittance };
     verify("tinted glass", ball(tinted));
+    let roughness = brushed([0.25, 0.5]);
     let tinted =
         MaterialKind::RoughDielectric { roughness, interior_ior, exterior_ior, reflectance, transmittance };
     verify("brushed tinted glass", ball(tinted));
@@ -287,57 +280,6 @@ fn rough_materials() {
 #[test]
 fn instances() {
     verify("instances", caustica_testkit::scenes::instanced());
-}
-
-fn smooth_plastic(nonlinear: bool) -> MaterialKind {
-    let (interior_ior, exterior_ior) = (1.7, 1.0);
-    let (diffuse, reflectance) = (Rgb([0.7, 0.5, 0.3]).into(), Rgb([0.8, 0.9, 1.0]).into());
-    MaterialKind::Plastic { interior_ior, exterior_ior, diffuse, reflectance, nonlinear }
-}
-
-fn rough_plastic() -> MaterialKind {
-    let (interior_ior, exterior_ior, alpha) = (1.5, 1.0, 0.2);
-    let (diffuse, reflectance) = (Rgb([0.7, 0.5, 0.3]).into(), Rgb([0.8, 0.9, 1.0]).into());
-    let distribution = Distribution::Beckmann;
-    MaterialKind::RoughPlastic {
-        distribution,
-        alpha,
-        interior_ior,
-        exterior_ior,
-        diffuse,
-        reflectance,
-        nonlinear: true,
-    }
-}
-
-fn principled() -> MaterialKind {
-    MaterialKind::Principled(Principled {
-        base_color: Rgb([0.7, 0.5, 0.3]).into(),
-        roughness: 0.5.into(),
-        anisotropic: 0.6.into(),
-        metallic: 0.3.into(),
-        spec_trans: 0.5.into(),
-        eta: 1.4,
-        spec_tint: 0.3.into(),
-        sheen: 0.5.into(),
-        sheen_tint: 0.5.into(),
-        flatness: 0.4.into(),
-        clearcoat: 0.5.into(),
-        clearcoat_gloss: 0.0.into(),
-    })
-}
-
-fn principled_thin() -> MaterialKind {
-    MaterialKind::PrincipledThin(PrincipledThin {
-        base_color: Rgb([0.7, 0.5, 0.3]).into(),
-        anisotropic: 0.4.into(),
-        spec_trans: 0.4.into(),
-        spec_tint: 0.3.into(),
-        sheen: 0.5.into(),
-        flatness: 0.4.into(),
-        diff_trans: 0.9.into(),
-        ..PrincipledThin::default()
-    })
 }
 
 #[test]

@@ -40,6 +40,11 @@ pub(super) fn scatter(
     let normal = normal.map(|c| c * f64::from(v.side(v.point.normal)).signum());
     let cos_g = dot(normal, to_light);
     if cos_g * light[2] <= 0.0 || dot(normal, to_camera) * camera[2] <= 0.0 {
+        // Where a direction all but touches either surface, rounding decides.
+        let touches = |cos: f64, local: Vector, blur: f64| cos.abs().min(local[2].abs()) < 4.0 * blur;
+        if touches(cos_g, light, blurs[0]) || touches(dot(normal, to_camera), camera, blurs[1]) {
+            return Ok(Scattering { uncertainty: f64::INFINITY, ..Scattering::smooth([0.0; 3], 0.0, 0.0) });
+        }
         return Err("a direction is on different sides of the two normals".into());
     }
     let mut s = match v.bump() {
