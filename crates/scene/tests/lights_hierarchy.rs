@@ -99,7 +99,7 @@ fn receivers(count: u32) -> Vec<Receiver> {
     let mut s = random(2);
     let one = |i: u32| {
         let at = place(&mut s, [0.5, 1.0, 3.0, 100.0][i as usize % 4]);
-        let normal = if i % 3 == 0 { Vec3::ZERO } else { warp::uniform_sphere(s.next_2d()) };
+        let normal = if i.is_multiple_of(3) { Vec3::ZERO } else { warp::uniform_sphere(s.next_2d()) };
         Receiver { at, normal }
     };
     (0..count).map(one).collect()

@@ -515,7 +515,6 @@ fn hierarchy_of_lamps() {
     emit(&mut d, bulb, 2.0);
     (0..5).for_each(|i| point_light(&mut d, [0.15 * i as f32 - 0.3, 0.5, -0.2], 0.1));
     verify("lamps of all kinds", d.clone());
-    spot(&mut d);
     sky(&mut d);
     // Open to the sky, with both sides of a pane of glass.
     d.shapes.remove(0);

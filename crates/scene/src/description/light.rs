@@ -15,7 +15,6 @@ pub struct Light {
 }
 
 /// The kinds of lamps that are not surfaces.
-#[expect(clippy::large_enum_variant, reason = "a scene has a handful of them")]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum LightKind {
     /// The same intensity in all directions.

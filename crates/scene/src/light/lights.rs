@@ -38,10 +38,20 @@ pub(super) enum Part {
 #[derive(Debug)]
 struct Hierarchy {
     tree: LightTree,
-    /// The tree and the lamps at infinity, by power. `None` if there are none of these.
-    sides: Option<Distribution1d>,
-    infinite: Vec<u32>,
+    beside: Option<Beside>,
 }
+
+/// Lamps at infinity.
+#[derive(Debug)]
+struct Beside {
+    lights: Vec<u32>,
+    /// By the irradiance that they may give.
+    choice: Distribution1d,
+    irradiance: f32,
+}
+
+/// The least probability of the tree, and of what is beside it, wherever either gives light: both irradiances are guesses.
+const LEAST_SIDE: f32 = 0.1;
 
 impl Lights {
     /// From lamps and the power of each.
@@ -69,19 +79,8 @@ impl Lights {
         for (index, (light, power)) in self.lights.iter().zip(powers).enumerate() {
             items_of(light, (index as u32, *power), around, &mut |item| items.push(item));
         }
-        let infinite: Vec<u32> =
-            (0..self.lights.len() as u32).filter(|i| self.lights[*i as usize].is_infinite()).collect();
-        let mut sides = vec![0.0];
-        for (light, power) in self.lights.iter().zip(powers) {
-            if light.is_infinite() {
-                sides.push(*power);
-            } else {
-                sides[0] += power;
-            }
-        }
-        let sides = if infinite.is_empty() { None } else { by_power(&sides) };
-        self.hierarchy =
-            LightTree::new(items, self.lights.len()).map(|tree| Hierarchy { tree, sides, infinite });
+        self.hierarchy = LightTree::new(items, self.lights.len())
+            .map(|tree| Hierarchy { tree, beside: Beside::new(&self.lights, powers, around) });
         self
     }
 
@@ -182,30 +181,65 @@ impl Lights {
 }
 
 impl Hierarchy {
+    /// The probability of the tree.
     #[inline]
-    fn choose(&self, to: &Receiver, choice: [f32; 2]) -> Option<(u32, Part, Mass)> {
-        let (mut u, mut side) = (choice[0], Mass::ONE);
-        if let Some(sides) = &self.sides {
-            let chosen = sides.sample(u);
-            if chosen.index > 0 {
-                return Some((self.infinite[chosen.index - 1], Part::By(choice[1]), chosen.mass));
+    fn side(&self, to: &Receiver) -> f32 {
+        let Some(beside) = &self.beside else { return 1.0 };
+        let irradiance = self.tree.irradiance(to);
+        if irradiance > 0.0 {
+            (irradiance / (irradiance + beside.irradiance)).clamp(LEAST_SIDE, 1.0 - LEAST_SIDE)
+        } else {
+            0.0
+        }
+    }
+
+    #[inline]
+    fn choose(&self, to: &Receiver, [mut u, other]: [f32; 2]) -> Option<(u32, Part, Mass)> {
+        let side = self.side(to);
+        if let Some(beside) = &self.beside {
+            if u >= side {
+                let chosen = beside.choice.sample(((u - side) / (1.0 - side)).min(ONE_BELOW));
+                let mass = Mass(chosen.mass.0 * (1.0 - side));
+                return Some((beside.lights[chosen.index], Part::By(other), mass));
             }
-            (u, side) = (chosen.remapped, chosen.mass);
+            u /= side;
         }
         // A million leaves use up the 24 bits of one number: those of the other follow.
-        let fine = f64::from(u) + f64::from(choice[1]) / f64::from(1 << 24);
+        let fine = f64::from(u) + f64::from(other) / f64::from(1 << 24);
         let (leaf, mass) = self.tree.choose(to, fine.min(f64::from(ONE_BELOW)))?;
-        Some((leaf.light, Part::Of(leaf.part), Mass(mass.0 * side.0)))
+        Some((leaf.light, Part::Of(leaf.part), Mass(mass.0 * side)))
     }
 
     #[inline]
     fn mass(&self, to: &Receiver, leaf: Leaf, infinite: bool) -> Mass {
-        let side = |index| self.sides.as_ref().map_or(Mass::ONE, |sides| sides.mass(index));
-        if infinite {
-            // The lamps at infinity are in order.
-            return self.infinite.binary_search(&leaf.light).map_or(Mass(0.0), |index| side(index + 1));
+        let side = self.side(to);
+        if !infinite {
+            return Mass(self.tree.mass(to, leaf).0 * side);
         }
-        Mass(self.tree.mass(to, leaf).0 * side(0).0)
+        let Some(beside) = &self.beside else { return Mass(0.0) };
+        // They are in order.
+        let index = beside.lights.binary_search(&leaf.light);
+        index.map_or(Mass(0.0), |index| Mass(beside.choice.mass(index).0 * (1.0 - side)))
+    }
+}
+
+impl Beside {
+    /// `None` if there are none.
+    fn new(lights: &[Light], powers: &[f64], around: &Surroundings<'_>) -> Option<Self> {
+        let across = std::f64::consts::PI * f64::from(around.radius) * f64::from(around.radius);
+        let (mut infinite, mut irradiances) = (Vec::new(), Vec::new());
+        for (index, (light, power)) in lights.iter().zip(powers).enumerate() {
+            // Of what comes from everywhere, a surface gets a quarter: half of it, and that by the cosine.
+            let part = match light {
+                Light::Directional(_) => 1.0,
+                Light::Environment(_) => 0.25,
+                _ => continue,
+            };
+            infinite.push(index as u32);
+            irradiances.push(part * power / across);
+        }
+        let irradiance = irradiances.iter().sum::<f64>().min(f32::MAX.into()) as f32;
+        Some(Self { lights: infinite, choice: by_power(&irradiances)?, irradiance })
     }
 }
 

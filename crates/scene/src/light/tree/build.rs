@@ -123,7 +123,8 @@ impl LightTree {
         }
         let size = (whole.max - whole.min).length_squared();
         let scale = 1.0 / size.clamp(f32::MIN_POSITIVE, f32::MAX);
-        Some(Self { nodes, leaves, trails, first, order, scale })
+        let unit = (total * f64::from(scale)).min(f32::MAX.into()) as f32;
+        Some(Self { nodes, leaves, trails, first, order, scale, unit })
     }
 }
 

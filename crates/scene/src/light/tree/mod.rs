@@ -40,6 +40,8 @@ pub struct LightTree {
     order: Vec<u32>,
     /// One over the squared size of it all.
     scale: f32,
+    /// The irradiance in W·m⁻² that an importance of one stands for.
+    unit: f32,
 }
 
 /// The longest way to a leaf: a trail's bits, by two.
@@ -106,6 +108,12 @@ impl LightTree {
             }
             trail /= WIDTH as u64;
         }
+    }
+
+    /// The irradiance of a place by all lamps together, in W·m⁻², about.
+    #[inline]
+    pub fn irradiance(&self, to: &Receiver) -> f32 {
+        self.nodes[0].importances(to, self.scale).iter().sum::<f32>() * self.unit
     }
 
     /// All leaves.

@@ -115,8 +115,8 @@ impl Node {
         if to.normal != Vec3::ZERO {
             let normal = to.normal.to_array().map(|n| splat(-n));
             let arriving = narrowed(dot(normal) * inverse, cos_size, sin_size);
-            dark = dark | arriving.simd_le(splat(-MARGIN));
-            importance = importance * arriving.fast_max(splat(LEAST_COS));
+            dark |= arriving.simd_le(splat(-MARGIN));
+            importance *= arriving.fast_max(splat(LEAST_COS));
         }
         let inside = squared.simd_le(within);
         let outside = dark.select(zero, importance);
