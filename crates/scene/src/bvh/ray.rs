@@ -146,7 +146,6 @@ impl<L: Lanes, const PARALLEL: bool> LaneRay<L, PARALLEL> {
     /// [`LaneRay::enter`] for the triangles' own boxes. The same values in another way: which planes are entered
     /// first is found lane by lane, as a choice by the ray's signs is a jump that nobody can predict.
     #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "the axis numbers many arrays")]
     pub(super) fn enter_triangles(&self, corners: &[[[f32; 8]; 3]; 3], t_max: L) -> (u32, L) {
         let (mut t_near, mut t_far) = (L::splat(0.0), t_max);
         for axis in 0..3 {
