@@ -130,6 +130,9 @@ fn what_instances_cannot_be() {
     refused(&with(nested), "holds no instances");
     let lamp = "<shape type='shapegroup'>§<shape type='cube'><emitter type='area'/></shape></shape>";
     refused(&with(lamp), "stands in a shapegroup");
+    let meter =
+        "<shape type='shapegroup'>§<shape type='cube'><sensor type='irradiancemeter'/></shape></shape>";
+    refused(&with(meter), "with its sensor");
     let empty = "<shape type='§shapegroup' id='e'/><shape type='instance'><ref id='e'/></shape>";
     let d: Description = warned(&with(empty), "has no shapes");
     assert!(d.instances.is_empty());
