@@ -176,6 +176,6 @@ fn twelve_materials() {
         ("bsdf_spheres/test_envmap_path.xml", "test_envmap"),
     ] {
         agrees(scene, reference, 32, None);
-        agrees(scene, reference, 32, Some(Integrator::Bdpt));
+        agrees(scene, reference, 128, Some(Integrator::Bdpt));
     }
 }
