@@ -43,7 +43,7 @@ pub struct Vertex {
 }
 
 // Connections run over all of them.
-const _: () = assert!(size_of::<Vertex>() <= 208);
+const _: () = assert!(size_of::<Vertex>() <= 224);
 
 /// A vertex's scattering into a given direction, seen along a walk.
 #[derive(Clone, Copy, Debug)]

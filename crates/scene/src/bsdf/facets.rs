@@ -29,8 +29,9 @@ impl Facets {
     /// Of roughness `alpha` along x and y, raised to [`MIN_ALPHA`] where it is less.
     #[inline]
     pub fn new(distribution: Distribution, shadowing: Shadowing, alpha: [f32; 2]) -> Self {
-        // `max` first: it takes the bound for what is no number.
-        Self { alpha: alpha.map(|a| a.max(MIN_ALPHA).min(MAX_ALPHA)), distribution, shadowing }
+        // What is no number counts as the least.
+        let within = |a: f32| if a > MIN_ALPHA { a.min(MAX_ALPHA) } else { MIN_ALPHA };
+        Self { alpha: alpha.map(within), distribution, shadowing }
     }
 
     /// Isotropic GGX with correlated shadowing.

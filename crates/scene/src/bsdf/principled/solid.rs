@@ -44,7 +44,7 @@ pub struct Principled {
 impl Principled {
     /// With numbers that are shares kept within [0, 1], and an index that transmission can do with.
     pub fn new(p: Self) -> Self {
-        let share = |x: f32| x.max(0.0).min(1.0);
+        let share = |x: f32| if x > 0.0 { x.min(1.0) } else { 0.0 };
         let spec_trans = share(p.spec_trans);
         let matched = (p.eta - 1.0).abs() < 1e-3 && spec_trans > 0.0;
         Self {
