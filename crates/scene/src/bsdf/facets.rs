@@ -29,8 +29,7 @@ impl Facets {
     /// Of roughness `alpha` along x and y, raised to [`MIN_ALPHA`] where it is less.
     #[inline]
     pub fn new(distribution: Distribution, shadowing: Shadowing, alpha: [f32; 2]) -> Self {
-        // `max` first: it takes the bound for what is no number.
-        Self { alpha: alpha.map(|a| a.max(MIN_ALPHA).min(MAX_ALPHA)), distribution, shadowing }
+        Self { alpha: alpha.map(|a| a.clamp(MIN_ALPHA, MAX_ALPHA)), distribution, shadowing }
     }
 
     /// Isotropic GGX with correlated shadowing.

