@@ -85,7 +85,7 @@ const OBJECTS: &[Row] = &[
     ("type='diffuse'", "type='§difuse'", "did you mean `diffuse`?"),
     ("type='sphere'", "type='§spere'", "did you mean `sphere`?"),
     ("type='area'", "type='§aera'", "did you mean `area`?"),
-    ("<emitter type='area'>", "§<emitter type='point'>", "only an `area` emitter can"),
+    ("<emitter type='area'>", "§<emitter type='point'>", "emitter can; put this one into the scene"),
     ("<ref id='wall'/>", "<ref id='§wal'/>", "did you mean `wall`?"),
     ("id='ball'", "id='wall'", "the id `wall` is given again"),
     ("<float name='focus_distance' value='3'/>", "", "needs the float `focus_distance`"),
