@@ -178,6 +178,13 @@ fn textured_diffuse() {
 }
 
 #[test]
+fn bump_map() {
+    let scene = "bsdf_spheres/test_bumpmap_path.xml";
+    agrees(scene, "test_bumpmap", 64, None);
+    agrees(scene, "test_bumpmap", 128, Some(Integrator::Bdpt));
+}
+
+#[test]
 fn rough_glass() {
     let scene = "bsdf_spheres/test_roughdielectric_path.xml";
     agrees(scene, "test_roughdielectric", 256, None);

@@ -41,6 +41,9 @@ pub struct Vertex {
     pub sums: RunningSums,
 }
 
+// Connections run over all of them.
+const _: () = assert!(size_of::<Vertex>() <= 208);
+
 /// A vertex's scattering into a given direction, seen along a walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Scatter {

@@ -162,8 +162,8 @@ fn to_uv(fields: &mut Fields) -> Result<ToUv, Diagnostic> {
     let transform = fields.transform("to_uv")?;
     let (x, y) = (transform.vector(Vec3::X), transform.vector(Vec3::Y));
     let offset = translation(&transform);
-    let size = (x.x.abs() + y.x.abs()) * (x.y.abs() + y.y.abs());
-    if (x.x * y.y - x.y * y.x).abs() <= 1e-6 * size {
+    let squares = x.x * x.x + x.y * x.y + y.x * y.x + y.y * y.y;
+    if (x.x * y.y - x.y * y.x).abs() <= 1e-9 * squares {
         fields.warn("`to_uv` cannot be inverted; it is left out");
         return Ok(ToUv { u: [1.0, 0.0, 0.0], v: [0.0, 1.0, 0.0] });
     }

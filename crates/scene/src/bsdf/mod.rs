@@ -147,7 +147,7 @@ impl Bsdf {
             Self::Conductor(b) => return lit(b.sample(given)?),
             Self::Dielectric(b) => return lit(b.sample(walk, given, u)?),
             Self::ThinDielectric(b) => return lit(b.sample(given, u)?),
-            Self::Null => return Some(sample_null(given)),
+            Self::Null => return sample_null(given),
             Self::RoughDielectric(b) if b.is_matched() => return lit(b.sample_matched(walk, given, u)?),
             Self::Diffuse(b) => b.sample_direction(given, u),
             Self::RoughDielectric(b) => b.sample_direction(given, u),

@@ -54,9 +54,11 @@ impl ThinDielectric {
     }
 }
 
-/// Nothing at all: light passes straight through.
+/// Nothing at all: light passes straight through, but along the horizon.
 #[inline]
-pub(super) fn sample_null(given: Vec3) -> Scattered {
+pub(super) fn sample_null(given: Vec3) -> Option<Scattered> {
     let one = SolidAnglePdf(1.0);
-    Scattered { direction: -given, value: Spectrum::ONE, pdf: one, reverse_pdf: one, delta: true }
+    let passed =
+        Scattered { direction: -given, value: Spectrum::ONE, pdf: one, reverse_pdf: one, delta: true };
+    (given.z != 0.0).then_some(passed)
 }

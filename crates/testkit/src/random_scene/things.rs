@@ -3,12 +3,13 @@
 use caustica_math::{Rgb, Transform, Vec2, Vec3};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    Distribution, Geometry, ImageId, MaterialId, MaterialKind, Mesh, Principled, PrincipledThin, Roughness,
-    Scalar, Shadowing, Texture, TextureTransform,
+    BumpRule, Distribution, Geometry, ImageId, MaterialId, MaterialKind, Mesh, Principled, PrincipledThin,
+    Roughness, Scalar, Shadowing, Texture, TextureTransform, Wrapper,
 };
 
 use super::choices::Choices;
 use crate::build::{add, ellipsoid, quad, sphere};
+use crate::materials::thin_glass;
 
 /// Adds a shape, with its material and, now and then, light.
 pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
@@ -154,7 +155,31 @@ fn material(d: &mut Description, choices: &mut Choices) -> MaterialId {
         9 => principled(choices, interior_ior),
         _ => principled_thin(choices, interior_ior),
     };
-    d.add_material(kind)
+    let inner = d.add_material(kind);
+    if choices.below(3) < 2 { inner } else { wrapped(d, inner, choices) }
+}
+
+/// A material made of that one and others.
+fn wrapped(d: &mut Description, inner: MaterialId, choices: &mut Choices) -> MaterialId {
+    let rule = BumpRule { flips: choices.once_in(2), shadows: choices.once_in(2) };
+    let other = d.add_material(match choices.below(4) {
+        0 => MaterialKind::Null,
+        1 => thin_glass(),
+        _ => MaterialKind::Diffuse { albedo: texture(false, choices) },
+    });
+    let wrapper = match choices.below(6) {
+        0 => Wrapper::Mask { opacity: texture(false, choices), inner },
+        1 | 2 => Wrapper::Blend { weight: texture(false, choices), inner: [inner, other] },
+        3 => Wrapper::NormalMap { normals: texture(false, choices), rule, inner },
+        4 => Wrapper::Bump { height: texture(false, choices), scale: choices.signed(), rule, inner },
+        _ => {
+            // What light passes through has no two sides.
+            let dark = d.add_material(MaterialKind::Diffuse { albedo: texture(false, choices) });
+            let light = d.add_material(MaterialKind::Mirror { reflectance: choices.albedo() });
+            Wrapper::TwoSided { front: dark, back: light }
+        }
+    };
+    d.add_material(MaterialKind::Wrapped(wrapper))
 }
 
 /// A share, often none.
