@@ -63,7 +63,7 @@ const TESTS: &str = r#"<scene>
 
 /// Most of what Mitsuba's scenes are made of.
 const MITSUBA: [&str; 3] = [
-    include_str!("../../../peers/mitsuba/scenes/bsdf_principled.xml"),
+    include_str!("../../../peers/mitsuba/scenes/solids.xml"),
     r##"<?xml version="1.0"?>
 <scene version="3.0.0">
   <default name="spp" value="16"/><default name="kind" value="thinlens"/><path value="."/>

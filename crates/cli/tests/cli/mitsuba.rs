@@ -6,7 +6,7 @@ const SCENE: &str = "<scene version='3.0.0'><default name='size' value='8'/>
   <integrator type='path'><integer name='max_depth' value='3'/></integrator>
   <sensor type='perspective'><film type='hdrfilm'><integer name='width' value='$size'/><integer name='height' value='6'/></film>
     <sampler type='independent'><integer name='sample_count' value='2'/></sampler></sensor>
-  <shape type='sphere'><point name='center' z='5'/><bsdf type='plastic'/></shape>
+  <shape type='sphere'><point name='center' z='5'/><bsdf type='hair'/></shape>
   <emitter type='constant'/>
 </scene>";
 
@@ -25,7 +25,7 @@ fn info_tells_what_is_approximated() {
     let bench = Bench::new();
     bench.write("scene.xml", SCENE);
     let ran = bench.run(&["info", "scene.xml", "--define", "size=4"]).ok();
-    assert!(ran.err.contains("scene.xml:5:64: the bsdf `plastic` is not supported yet"), "{}", ran.err);
+    assert!(ran.err.contains("scene.xml:5:64: the bsdf `hair` is not supported yet"), "{}", ran.err);
     assert!(ran.out.contains("4 × 6 pixels"), "{}", ran.out);
 }
 
