@@ -127,7 +127,7 @@ fn raw_values_are_what_they_are() {
     let (texture, d) = picture("<boolean name='raw' value='true'/>");
     // The same file twice, once as colours.
     assert_eq!(d.images.len(), 2);
-    let table = TextureTable { images: &d.images };
+    let table = TextureTable::new(&d.images);
     let at = |u: f32, v: f32| table.rgb(&texture, Vec2::new(u, v)).0[0];
     assert_eq!([at(0.25, 0.75), at(0.75, 0.75), at(0.25, 0.25), at(0.75, 0.25)], [0.0, 0.2, 0.4, 0.8]);
     let MaterialKind::Diffuse { albedo } = d.materials[0].kind else { panic!() };
@@ -162,7 +162,7 @@ fn turned_textures() {
         "<bsdf type='diffuse'><texture type='checkerboard' name='reflectance'>{quarter}</texture></bsdf>"
     );
     let MaterialKind::Diffuse { albedo: quarter } = made(&quarter).0 else { panic!() };
-    let table = TextureTable { images: &d.images };
+    let table = TextureTable::new(&d.images);
     let place = |angle: f32, u: f32, v: f32| {
         let (s, c) = caustica_math::elementary::sin_cos(angle.to_radians());
         [2.0 * (c * u - s * v) + 0.25, 3.0 * (s * u + c * v) - 0.5]

@@ -412,7 +412,7 @@ fn textures_are_placed_for_v_upside_down() {
         <transform name='to_uv'><scale x='2' y='3'/><translate x='.25'/></transform></texture></bsdf></shape>";
     let d = good(&scene(board));
     let MaterialKind::Diffuse { albedo } = d.materials[0].kind else { panic!() };
-    let table = caustica_scene::texture::TextureTable { images: &[] };
+    let table = caustica_scene::texture::TextureTable::new(&[]);
     for (u, v) in [(0.05, 0.05), (0.3, 0.1), (0.2, 0.4), (0.9, 0.8), (0.55, 0.95)] {
         // Mitsuba's: white where both coordinates lie in the same half of the unit.
         let half = |x: f32| x - x.floor() > 0.5;

@@ -97,6 +97,60 @@ fn mirrored_meshes() {
     }
 }
 
+/// Colours of corners and of faces reach materials and lamps; what has none is told where it stands.
+#[test]
+fn mesh_attributes() {
+    let folder = tempfile::tempdir().unwrap();
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
+        property list uchar int vertex_indices\nproperty float heat_1\nend_header\n";
+    let rows = "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2 0.25\n";
+    std::fs::write(folder.path().join("m.ply"), format!("{head}{rows}")).unwrap();
+    let read = |inner: &str| {
+        let mesh = format!("<shape type='ply'><string name='filename' value='m.ply'/>{inner}</shape>");
+        parse_mitsuba(&scene(&mesh), "s.xml", folder.path(), &[]).unwrap()
+    };
+    let texture = |slot: &str, name: &str| {
+        format!(
+            "<texture type='mesh_attribute' name='{slot}'><string name='name' value='{name}'/>\
+             <float name='scale' value='.5'/></texture>"
+        )
+    };
+    let seen = |name: &str| {
+        let read = read(&format!("<bsdf type='diffuse'>{}</bsdf>", texture("reflectance", name)));
+        assert_eq!(read.warnings, []);
+        let scene = Scene::new(read.scene.unwrap()).map_err(|e| e.to_string())?.0;
+        let ray = Ray { origin: Vec3::new(0.25, 0.5, 5.0), direction: -Vec3::Z, t_max: f32::INFINITY };
+        let rgb = caustica_math::Wavelengths::Rgb;
+        match scene.bsdf(&scene.closest(&ray).unwrap(), rgb) {
+            caustica_scene::bsdf::Bsdf::Diffuse(found) => Ok(rgb.rgb(found.albedo).0),
+            other => Err(format!("{other:?}")),
+        }
+    };
+    near(seen("vertex_color").unwrap(), [0.125, 0.125, 0.25], "corners");
+    near(seen("face_heat").unwrap(), [0.125; 3], "faces");
+    let missing = seen("vertex_heat").unwrap_err();
+    let hint = "the mesh has `vertex_color`, `face_heat`";
+    assert!(missing.contains("m.ply has no attribute `vertex_heat`") && missing.contains(hint), "{missing}");
+
+    let lamp = read(&format!("<emitter type='area'>{}</emitter>", texture("radiance", "vertex_color")));
+    let d = lamp.scene.unwrap();
+    assert!(matches!(d.shapes[0].emission, Some(caustica_scene::description::Texture::Attribute { .. })));
+    Scene::new(d).unwrap();
+
+    let named = |inner: &str| {
+        scene(&format!(
+            "<shape type='cube'><bsdf type='diffuse'>§<texture type='mesh_attribute' \
+            name='reflectance'>{inner}</texture></bsdf></shape>"
+        ))
+    };
+    refused(&named(""), "needs the string `name`");
+    let other = named("<string name='name' value='§color'/>").replacen('§', "", 1);
+    refused(&other, "the attribute `color` is neither of vertices nor of faces");
+    let both = texture("intensity", "vertex_color");
+    refused(&scene(&format!("§<emitter type='point'>{both}</emitter>")), "cannot be a `mesh_attribute`");
+}
+
 const GROUP: &str = "<shape type='shapegroup' id='g'><shape type='cube'><transform name='to_world'>\
     <scale value='.5'/></transform></shape><shape type='sphere' id='ball'/></shape>";
 

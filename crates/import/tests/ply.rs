@@ -1,7 +1,8 @@
 //! Stanford PLY files.
 
 use caustica_import::read_ply;
-use caustica_math::{Vec2, Vec3};
+use caustica_math::{Rgb, Vec2, Vec3};
+use caustica_scene::description::Domain;
 use proptest::prelude::*;
 
 const TEXT: &str = "ply\nformat ascii 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty double y\n\
@@ -55,6 +56,78 @@ fn all_encodings_hold_the_same() {
     assert_eq!(read_ply(windows.as_bytes(), "m.ply").unwrap().mesh, mesh);
 }
 
+/// A square whose vertices and faces have those properties, each counted from the first: in rows of 0 0.1 0.2 …, of
+/// bytes 0 51 102 ….
+fn with_properties(kind: &str, of_vertices: &str, of_faces: &str) -> Vec<u8> {
+    let properties = |names: &str| -> String {
+        names.split_whitespace().map(|n| format!("property {kind} {n}\n")).collect()
+    };
+    let values = |names: &str| -> String {
+        let value = |i: usize| if kind == "uchar" { (51 * i).to_string() } else { format!("0.{i}") };
+        names.split_whitespace().enumerate().map(|(i, _)| format!(" {}", value(i))).collect()
+    };
+    let corner = |at: &str| format!("{at}{}\n", values(of_vertices));
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n{}\
+         element face 2\nproperty list uchar int vertex_indices\n{}end_header\n{}4 0 1 2 3{}\n2 0 1{}\n",
+        properties(of_vertices),
+        properties(of_faces),
+        ["0 0 0", "1 0 0", "1 1 0", "0 1 0"].map(corner).concat(),
+        values(of_faces),
+        values(of_faces),
+    )
+    .into_bytes()
+}
+
+/// Names and first values as Mitsuba 3.9 has them, but for bytes, which it does not divide.
+#[test]
+fn attributes_are_named_as_mitsuba_names_them() {
+    let found = |kind: &str, properties: &str| -> Vec<(String, [f32; 3])> {
+        let mesh = read_ply(&with_properties(kind, properties, ""), "m.ply").unwrap().mesh;
+        assert!(mesh.attributes.iter().all(|a| a.domain == Domain::Vertex && a.values.len() == 4));
+        mesh.attributes.into_iter().map(|a| (a.name, a.values[0].0)).collect()
+    };
+    for (properties, name, value) in [
+        ("r g b", "vertex_color", [0.0, 0.1, 0.2]),
+        ("b g r", "vertex_color", [0.2, 0.1, 0.0]),
+        ("red green blue", "vertex_color", [0.0, 0.1, 0.2]),
+        ("red green blue r g b", "vertex_color", [0.3, 0.4, 0.5]),
+        ("k r g b", "vertex_color", [0.1, 0.2, 0.3]),
+        ("k heat_x", "vertex_heat", [0.1; 3]),
+        ("k heat_1", "vertex_heat", [0.1; 3]),
+        ("k heat_r", "vertex_heat_color", [0.1; 3]),
+        ("heat_r heat_g heat_b", "vertex_heat_color", [0.0, 0.1, 0.2]),
+        ("long_name_x long_name_y long_name_z", "vertex_long_name", [0.0, 0.1, 0.2]),
+        ("heat_0 heat_1 heat_2", "vertex_heat", [0.0, 0.1, 0.2]),
+        ("heat_1 heat_2 heat_3", "vertex_heat", [0.0, 0.1, 0.2]),
+    ] {
+        assert_eq!(found("float", properties), [(name.to_owned(), value)], "{properties}");
+    }
+    for none in
+        ["k", "color", "r g", "heat_x heat_y", "heat_y", "heat_r heat_g heat_b heat_a", "texture_u nx"]
+    {
+        assert_eq!(found("float", none), [], "{none}");
+    }
+    let two = found("float", "a_r b_r");
+    assert_eq!(two, [("vertex_a_color".into(), [0.0; 3]), ("vertex_b_color".into(), [0.1; 3])]);
+    // No name comes twice.
+    assert_eq!(found("float", "r g b color_x"), [("vertex_color".into(), [0.0, 0.1, 0.2])]);
+    // Colours in bytes are parts of 255, other numbers are not.
+    assert_eq!(found("uchar", "r g b"), [("vertex_color".into(), [0.0, 0.2, 0.4])]);
+    assert_eq!(found("uchar", "k heat_x"), [("vertex_heat".into(), [51.0; 3])]);
+}
+
+/// A face of four corners has the value of both its triangles; one without triangles has none.
+#[test]
+fn attributes_of_faces() {
+    let mesh = read_ply(&with_properties("float", "", "r g b h_1"), "m.ply").unwrap().mesh;
+    assert_eq!(mesh.triangles.len(), 2);
+    let [colour, number] = &mesh.attributes[..] else { panic!("{:?}", mesh.attributes) };
+    assert_eq!((colour.name.as_str(), colour.domain), ("face_color", Domain::Face));
+    assert_eq!(colour.values, [Rgb([0.0, 0.1, 0.2]); 2]);
+    assert_eq!((number.name.as_str(), &number.values[..]), ("face_h", &[Rgb::splat(0.3); 2][..]));
+}
+
 #[test]
 fn errors_have_lines() {
     for (old, new, message, line) in [
@@ -102,11 +175,14 @@ proptest! {
 
     #[test]
     fn damaged_files(
-        which in 0..3_usize,
+        which in 0..5_usize,
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         kept in 0.0..1.2_f64,
     ) {
-        let mut bytes = [TEXT.as_bytes().to_vec(), binary(false), binary(true)][which].clone();
+        let attributed = ["float", "uchar"].map(|kind| with_properties(kind, "r g b h_0", "red green blue k_x"));
+        let [floats, bytes] = attributed;
+        let mut bytes =
+            [TEXT.as_bytes().to_vec(), binary(false), binary(true), floats, bytes][which].clone();
         for (at, byte) in edits {
             let at = at.index(bytes.len());
             bytes[at] = byte;
@@ -118,6 +194,9 @@ proptest! {
                 prop_assert!(read.mesh.triangles.iter().flatten().all(|v| (*v as usize) < vertices));
                 prop_assert!(read.mesh.positions.iter().all(|p| p.is_finite()));
                 prop_assert!([0, vertices].contains(&read.mesh.normals.len()));
+                let names: std::collections::BTreeSet<&str> =
+                    read.mesh.attributes.iter().map(|a| a.name.as_str()).collect();
+                prop_assert_eq!(names.len(), read.mesh.attributes.len());
             }
             Err(error) => prop_assert!(error.origin.is_some(), "{error}"),
         }

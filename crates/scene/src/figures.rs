@@ -131,6 +131,8 @@ pub(crate) fn placement(texture: &Texture, what: &str) -> Result<(), Diagnostic>
             return Ok(());
         }
         Texture::Image { .. } => "has a scale or an offset that is not finite",
+        Texture::Attribute { scale, .. } if scale.is_finite() && *scale >= 0.0 => return Ok(()),
+        Texture::Attribute { .. } => "has a scale that is negative or not finite",
     };
     Err(Diagnostic::error(format!("{what} {message}")))
 }

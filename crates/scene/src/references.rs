@@ -4,12 +4,21 @@ use crate::description::{Description, LightKind, Texture};
 use crate::diagnostic::Diagnostic;
 use crate::figures::placement;
 
-/// Whether the colours of a texture are finite and none is negative. (Images are looked at apart.)
+/// Whether the colours of a texture are finite and none is negative. (Images and attributes are looked at apart.)
 fn is_valid(texture: &Texture) -> bool {
     match texture {
         Texture::Constant(c) => c.is_valid(),
         Texture::Checkerboard { value1, value2, .. } => value1.is_valid() && value2.is_valid(),
-        Texture::Image { .. } => true,
+        Texture::Image { .. } | Texture::Attribute { .. } => true,
+    }
+}
+
+/// Whether there is what a texture names.
+fn exists(texture: &Texture, d: &Description) -> bool {
+    match texture {
+        Texture::Constant(_) | Texture::Checkerboard { .. } => true,
+        Texture::Image { image, .. } => (image.0 as usize) < d.images.len(),
+        Texture::Attribute { attribute, .. } => (attribute.0 as usize) < d.attributes.len(),
     }
 }
 
@@ -26,8 +35,12 @@ fn light(kind: &LightKind, d: &Description) -> Result<(), Diagnostic> {
         LightKind::LinearSpot { picture: Some(t), .. } => t,
         _ => return Ok(()),
     };
-    if matches!(texture, Texture::Image { image, .. } if image.0 as usize >= d.images.len()) {
-        return Err(Diagnostic::error("a lamp's picture names an image that does not exist"));
+    if matches!(texture, Texture::Attribute { .. }) && !matches!(kind, LightKind::Collimated { .. }) {
+        return Err(Diagnostic::error("a lamp's picture is an attribute of a mesh")
+            .hint("use an image: what is thrown from a point lies on no mesh"));
+    }
+    if !exists(texture, d) {
+        return Err(Diagnostic::error("a lamp's picture names an image or an attribute that does not exist"));
     }
     if !is_valid(texture) {
         return Err(Diagnostic::error("a lamp's colour must be finite and not negative"));
@@ -57,10 +70,6 @@ fn groups(d: &Description) -> Result<(), Diagnostic> {
 
 /// Every id must name something, and every colour be one.
 pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
-    let image_exists = |t: &Texture| match t {
-        Texture::Image { image, .. } => (image.0 as usize) < d.images.len(),
-        _ => true,
-    };
     for image in &d.images {
         if image.width == 0
             || image.height == 0
@@ -74,9 +83,11 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
     }
     for m in &d.materials {
         let textures = m.kind.textures();
-        if !textures.iter().all(|t| image_exists(t)) {
-            return Err(Diagnostic::error("a material's texture names an image that does not exist")
-                .at(m.origin.clone()));
+        if !textures.iter().all(|t| exists(t, d)) {
+            return Err(Diagnostic::error(
+                "a material's texture names an image or an attribute that does not exist",
+            )
+            .at(m.origin.clone()));
         }
         if !textures.into_iter().all(is_valid) {
             return Err(
@@ -86,10 +97,9 @@ pub(crate) fn check(d: &Description) -> Result<(), Diagnostic> {
     }
     groups(d)?;
     for s in d.all_shapes() {
-        if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !image_exists(t))
-        {
+        if s.material.0 as usize >= d.materials.len() || s.emission.as_ref().is_some_and(|t| !exists(t, d)) {
             return Err(Diagnostic::error(format!(
-                "{} names a material or an image that does not exist",
+                "{} names a material, an image or an attribute that does not exist",
                 s.name
             ))
             .at(s.origin.clone()));

@@ -13,10 +13,10 @@ use crate::diagnostic::Diagnostic;
 use crate::light::{AreaLight, Light, LightPoint, LightQuery, Lights, Surroundings};
 use crate::material::{FlatMaterial, bsdf_at, flatten};
 use crate::references;
-use crate::surface::{FARTHEST, FlatShape, SurfacePoint, Surfaces};
+use crate::surface::{FARTHEST, FlatShape, Site, SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 use crate::traits::{self, Traits, varies};
-use crate::{figures, memory};
+use crate::{attributes, figures, memory};
 
 /// A scene ready to be rendered. Immutable, and shared between threads.
 #[derive(Debug)]
@@ -73,9 +73,11 @@ impl Scene {
         references::check(&description)?;
         figures::check(&description)?;
         let traits = traits::of_all(&description.materials)?;
+        attributes::resolve(&mut description)?;
         let mut surfaces = Surfaces::new(&mut description.shapes, &mut warnings)?;
         let camera = Camera::among(&surfaces, &description.camera, &film)?;
         surfaces.add_groups(&mut description, &mut warnings)?;
+        surfaces.number_attributes(&description.attributes);
         surfaces.mark(description.all_shapes().map(|shape| {
             let material = traits[shape.material.0 as usize];
             let uses_uv = material.uses_uv || shape.emission.as_ref().is_some_and(varies);
@@ -196,7 +198,7 @@ impl Scene {
     #[inline(always)]
     pub fn bsdf(&self, point: &SurfacePoint, wavelengths: Wavelengths) -> Bsdf {
         let material = self.surfaces.shapes[point.shape as usize].material;
-        bsdf_at(self.material(material), &self.textures(), point.uv, wavelengths)
+        bsdf_at(self.material(material), &self.textures_at(point), point.uv, wavelengths)
     }
 
     /// Whether the material of a point is more than one BSDF in its place.
@@ -230,7 +232,13 @@ impl Scene {
     /// The textures.
     #[inline(always)]
     pub(crate) fn textures(&self) -> TextureTable<'_> {
-        TextureTable { images: &self.images }
+        TextureTable::new(&self.images)
+    }
+
+    /// The textures, at a point.
+    #[inline(always)]
+    pub(crate) fn textures_at(&self, point: &SurfacePoint) -> TextureTable<'_> {
+        self.textures().at(Site::of(point, &self.surfaces))
     }
 
     /// The point as part of a lamp, if its shape is one.
@@ -319,12 +327,17 @@ impl Scene {
     fn brightest_of(&self, description: &Description) -> f32 {
         let of_image =
             |i: ImageId| self.images[i.0 as usize].pixels.iter().fold(0.0_f32, |m, p| m.max(p.max_channel()));
-        let of_texture = |t: &Texture| match t {
+        let of_texture = |(shape, t): (usize, &Texture)| match t {
             Texture::Constant(c) => c.max_channel(),
             Texture::Checkerboard { value1, value2, .. } => value1.max_channel().max(value2.max_channel()),
             Texture::Image { image, .. } => of_image(*image),
+            Texture::Attribute { attribute, scale } => {
+                let values = self.surfaces.attribute_values(*attribute, shape as u32);
+                values.iter().fold(0.0_f32, |m, v| m.max(v.max_channel())) * scale
+            }
         };
-        let surfaces = description.shapes.iter().filter_map(|s| s.emission.as_ref()).map(of_texture);
+        let emissions = description.shapes.iter().enumerate();
+        let surfaces = emissions.filter_map(|(i, s)| Some((i, s.emission.as_ref()?))).map(of_texture);
         let environments = description.lights.iter().map(|l| match l.kind {
             LightKind::Constant { radiance } => radiance.max_channel(),
             LightKind::Environment { image, scale, .. } => of_image(image) * scale,

@@ -1,5 +1,6 @@
 //! Surfaces as rays find them: flat tables of corners and triangles, and the points that are hit.
 
+mod attributes;
 mod border;
 mod flatten;
 mod groups;
@@ -11,8 +12,10 @@ use caustica_math::elementary::{asin, atan2};
 use caustica_math::{Frame, Vec2, Vec3, spherical};
 
 use crate::bvh::{Hit, Instance, SphereData};
+use attributes::FlatAttribute;
 use groups::Group;
 
+pub use attributes::Site;
 pub(crate) use flatten::{FARTHEST, is_reachable, unreachable};
 
 /// No index.
@@ -42,6 +45,7 @@ pub struct FlatShape {
     first_position: u32,
     first_normal: u32,
     first_uv: u32,
+    first_attribute: u32,
 }
 
 /// A point on a surface.
@@ -85,6 +89,7 @@ pub struct Surfaces {
     triangles: Vec<[u32; 3]>,
     triangle_shapes: Vec<u32>,
     spheres: Vec<FlatSphere>,
+    attributes: Vec<FlatAttribute>,
     groups: Vec<Group>,
     instances: Arc<[Instance]>,
 }
@@ -151,6 +156,7 @@ impl Surfaces {
             + size_of_val(&*self.triangles)
             + size_of_val(&*self.triangle_shapes)
             + size_of_val(&*self.spheres)
+            + self.attribute_memory()
             + self.groups().map(Self::memory).sum::<usize>()
     }
 

@@ -3,15 +3,30 @@
 use caustica_math::{Rgb, Spectrum, Vec2, Wavelengths};
 
 use crate::description::{Image, PixelLookup, Scalar, Texture, TextureTransform, Wrap};
+use crate::surface::Site;
 
 /// A colour that may vary over a surface, as the renderer evaluates it.
 #[derive(Clone, Copy, Debug)]
 pub struct TextureTable<'a> {
     /// The images that image textures name.
     pub images: &'a [Image],
+    /// The place where they are looked up. Attributes of meshes are black without one.
+    pub site: Option<Site<'a>>,
 }
 
-impl TextureTable<'_> {
+impl<'a> TextureTable<'a> {
+    /// Textures by those images.
+    #[inline(always)]
+    pub fn new(images: &'a [Image]) -> Self {
+        Self { images, site: None }
+    }
+
+    /// The same at a place.
+    #[inline(always)]
+    pub fn at(self, site: Site<'a>) -> Self {
+        Self { site: Some(site), ..self }
+    }
+
     /// The texture's colour at `uv`.
     #[inline]
     pub fn rgb(&self, texture: &Texture, uv: Vec2) -> Rgb {
@@ -31,6 +46,9 @@ impl TextureTable<'_> {
                     PixelLookup::Bilinear => bilinear(image, at.x, at.y, wrap),
                     PixelLookup::Nearest => nearest(image, at, wrap),
                 }
+            }
+            Texture::Attribute { attribute, scale } => {
+                self.site.as_ref().map_or(Rgb::BLACK, |site| site.attribute(*attribute) * *scale)
             }
         }
     }
@@ -57,6 +75,11 @@ impl TextureTable<'_> {
                 let pixels = &self.images[image.0 as usize].pixels;
                 let sum: f64 = pixels.iter().map(|p| f64::from(p.luminance())).sum();
                 (sum / pixels.len() as f64) as f32
+            }
+            Texture::Attribute { attribute, scale } => {
+                let values = self.site.as_ref().map_or(&[][..], |site| site.attribute_values(*attribute));
+                let sum: f64 = values.iter().map(|v| f64::from(v.luminance())).sum();
+                (sum / values.len().max(1) as f64) as f32 * scale
             }
         }
     }
@@ -170,7 +193,7 @@ mod tests {
     #[test]
     fn image_rows_run_down_from_v_one() {
         let images = [image()];
-        let table = TextureTable { images: &images };
+        let table = TextureTable::new(&images);
         let t = Texture::Image { image: ImageId(0), transform: TextureTransform::default() };
         assert_eq!(table.rgb(&t, Vec2::new(0.25, 0.75)), Rgb::splat(0.0));
         assert_eq!(table.rgb(&t, Vec2::new(0.75, 0.25)), Rgb::splat(3.0));
@@ -181,7 +204,7 @@ mod tests {
 
     #[test]
     fn checkerboard_parity() {
-        let table = TextureTable { images: &[] };
+        let table = TextureTable::new(&[]);
         let t = Texture::Checkerboard {
             delta: [0.0; 2],
             scale: [0.5, 1.0],
@@ -200,7 +223,7 @@ mod tests {
         let pixels = [0.0, 1.0, 2.0, 3.0].map(Rgb::splat).into();
         let images = [Image { width: 4, height: 1, pixels }];
         let texture = Texture::Image { image: ImageId(0), transform };
-        TextureTable { images: &images }.rgb(&texture, Vec2::new(u, 0.5)).0[0]
+        TextureTable::new(&images).rgb(&texture, Vec2::new(u, 0.5)).0[0]
     }
 
     #[test]
@@ -226,7 +249,7 @@ mod tests {
     fn gradients_are_derivatives() {
         let pixels = (0..30).map(|i| Rgb::splat((i * 7 % 11) as f32)).collect();
         let images = [Image { width: 6, height: 5, pixels }];
-        let table = TextureTable { images: &images };
+        let table = TextureTable::new(&images);
         for wrap in [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp] {
             let (scale, shear, offset) = ([1.3, -0.7], [0.4, 0.9], [0.2, 0.1]);
             let transform = TextureTransform { scale, shear, offset, wrap, ..TextureTransform::default() };

@@ -116,5 +116,5 @@ fn of(kind: &MaterialKind) -> Traits {
 
 /// Whether a texture depends on the texture coordinates.
 pub(crate) fn varies(texture: &Texture) -> bool {
-    !matches!(texture, Texture::Constant(_))
+    !matches!(texture, Texture::Constant(_) | Texture::Attribute { .. })
 }

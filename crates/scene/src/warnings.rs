@@ -128,11 +128,11 @@ fn bright_albedos(description: &Description, warnings: &mut Vec<Diagnostic>) {
     }
 }
 
-/// The largest channel of a texture without images.
+/// The largest channel of a texture without images and attributes.
 fn brightest(texture: &Texture) -> f32 {
     match texture {
         Texture::Constant(c) => c.max_channel(),
         Texture::Checkerboard { value1, value2, .. } => value1.max_channel().max(value2.max_channel()),
-        Texture::Image { .. } => 0.0,
+        Texture::Image { .. } | Texture::Attribute { .. } => 0.0,
     }
 }

@@ -30,7 +30,7 @@ impl Scene {
     /// what the vertex is where chance decides.
     #[inline(never)]
     pub fn placed(&self, point: &SurfacePoint, prev: Vec3, label: f64, w: Wavelengths) -> Placed {
-        let (textures, mut label) = (self.textures(), label);
+        let (textures, mut label) = (self.textures_at(point), label);
         let mut chance = |share: f32| {
             let share = f64::from(share);
             let hit = label < share;

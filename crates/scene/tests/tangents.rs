@@ -24,6 +24,7 @@ fn triangle(uvs: [[f32; 2]; 3]) -> Mesh {
         normals: vec![Vec3::new(0.1, 0.0, 1.0), Vec3::new(0.0, 0.2, 1.0), Vec3::new(-0.3, 0.0, 1.0)],
         uvs: uvs.map(|[x, y]| Vec2::new(x, y)).to_vec(),
         triangles: vec![[0, 1, 2]],
+        attributes: vec![],
     }
 }
 

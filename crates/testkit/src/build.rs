@@ -62,6 +62,7 @@ pub fn quad(d: &mut Description, corner: [f32; 3], u: [f32; 3], v: [f32; 3], mat
         uvs: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec2::new(x, y)).to_vec(),
         normals: vec![],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        attributes: vec![],
     };
     add(d, "quad", Geometry::Mesh(mesh), material)
 }

@@ -154,6 +154,7 @@ pub fn mirrored(by_transform: bool) -> Description {
         normals: vec![x.cross(z) + Vec3::new(0.0, -0.125, 0.0625); 4],
         uvs: [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec2::new(x, y)).to_vec(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
+        attributes: vec![],
     };
     let panel = add(&mut d, "panel", Geometry::Mesh(panel), m);
     emit(&mut d, panel, 8.0);

@@ -3,8 +3,8 @@
 use caustica_math::Rgb;
 use caustica_scene::Description;
 use caustica_scene::description::{
-    BumpRule, Distribution, Image, MaterialId, MaterialKind, Principled, PrincipledThin, Roughness, Scalar,
-    Shadowing, Texture, TextureTransform, Wrapper,
+    Attribute, BumpRule, Distribution, Domain, Geometry, Image, MaterialId, MaterialKind, Principled,
+    PrincipledThin, Roughness, Scalar, Shadowing, Texture, TextureTransform, Wrapper,
 };
 
 use crate::build::{diffuse, glass};
@@ -13,6 +13,23 @@ use crate::build::{diffuse, glass};
 pub fn checks(fields: f32, greys: [f32; 2]) -> Texture {
     let [value1, value2] = greys.map(Rgb::splat);
     Texture::Checkerboard { delta: [0.2; 2], scale: [1.0 / fields; 2], shear: [0.0; 2], value1, value2 }
+}
+
+/// A texture by colours of a mesh, given the number of each corner or triangle. (Spheres get none.)
+pub fn attribute(d: &mut Description, shape: usize, domain: Domain, color: impl Fn(usize) -> Rgb) -> Texture {
+    let name = format!("{domain:?}");
+    if let Geometry::Mesh(mesh) = &mut d.shapes[shape].geometry {
+        let count = if domain == Domain::Vertex { mesh.positions.len() } else { mesh.triangles.len() };
+        let values = (0..count).map(color).collect();
+        mesh.attributes.push(Attribute { name: name.clone(), domain, values });
+    }
+    Texture::Attribute { attribute: d.add_attribute(&name), scale: 1.0 }
+}
+
+/// Colours that jump from each number to the next.
+pub fn motley(i: usize) -> Rgb {
+    let channel = |k: usize| 0.1 + 0.8 * (i * k % 11) as f32 / 10.0;
+    Rgb::new(channel(3), channel(5), channel(7))
 }
 
 fn wrapped(d: &mut Description, wrapper: Wrapper) -> MaterialId {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use caustica_math::{Filter, Rgb, Transform, Vec2};
 use caustica_scene::description::{
-    BumpRule, CameraKind, Crop, EnvironmentRows, Geometry, Image, ImageId, LightKind, MaterialId,
+    BumpRule, CameraKind, Crop, Domain, EnvironmentRows, Geometry, Image, ImageId, LightKind, MaterialId,
     MaterialKind, Roughness, Texture, TextureTransform,
 };
 use caustica_scene::{Description, Scene};
@@ -473,6 +473,22 @@ fn sphere_lamps() {
     emit(&mut d, shell, 1.0);
     sphere(&mut d, [0.2, 0.0, 0.4], 0.3, m);
     verify("shell", d);
+}
+
+/// Colours of corners and of triangles, on surfaces and on a lamp.
+#[test]
+fn attributes_of_meshes() {
+    for domain in [Domain::Vertex, Domain::Face] {
+        let mut d = egg(closed(), microfacet());
+        let egg = d.shapes.len() - 1;
+        let kd = attribute(&mut d, egg, domain, motley);
+        d.materials.last_mut().unwrap().kind =
+            MaterialKind::Microfacet { alpha: 0.3, interior_ior: 1.5, exterior_ior: 1.0, kd };
+        let lamp = lamp(&mut d);
+        let emission = attribute(&mut d, lamp, domain, |i| motley(i) * 5.0);
+        d.shapes[lamp].emission = Some(emission);
+        verify(&format!("by {domain:?}"), d);
+    }
 }
 
 #[test]

@@ -98,7 +98,8 @@ impl<'c> Context<'c> {
         let placed = |e: Diagnostic| if e.origin.is_some() { e } else { e.at(Some(origin.clone())) };
         let mesh = if let Some(mesh) = self.meshes.get(&(path.clone(), format)) {
             let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs);
-            let bytes = (bytes + size_of_val(&*mesh.triangles)) as u64;
+            let attributes: usize = mesh.attributes.iter().map(|a| size_of_val(&*a.values)).sum();
+            let bytes = (bytes + size_of_val(&*mesh.triangles) + attributes) as u64;
             let error = |e| placed(shortage(&format!("another copy of the mesh `{file}`"), e));
             self.paths.folder.memory.check(bytes).map_err(error)?;
             mesh.clone()

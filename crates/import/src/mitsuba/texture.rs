@@ -14,9 +14,19 @@ use super::tree::Value;
 use crate::image::Codes;
 use crate::nori::range::Bounds;
 
-const TEXTURES: &[&str] =
-    &["bitmap", "checkerboard", "rgb", "srgb", "uniform", "d65", "blackbody", "regular", "irregular"];
-const UNSUPPORTED: &[&str] = &["mesh_attribute", "volume", "grid", "scale", "wireframe", "curvature"];
+const TEXTURES: &[&str] = &[
+    "bitmap",
+    "checkerboard",
+    "mesh_attribute",
+    "rgb",
+    "srgb",
+    "uniform",
+    "d65",
+    "blackbody",
+    "regular",
+    "irregular",
+];
+const UNSUPPORTED: &[&str] = &["volume", "grid", "scale", "wireframe", "curvature"];
 
 /// A colour property, or a texture or spectrum of that name, if either is there.
 pub(super) fn slot(
@@ -53,6 +63,10 @@ pub(super) fn constant(
             flat(fields, name);
             mean(&cx.description.images[image.0 as usize].pixels)
         }
+        Texture::Attribute { .. } => {
+            let message = format!("`{name}` of the {} cannot be a `mesh_attribute`", fields.title());
+            return Err(fields.error(message).hint("give one color"));
+        }
     }))
 }
 
@@ -74,6 +88,7 @@ pub(super) fn read(index: usize, role: Role, cx: &mut Context) -> Result<Texture
     let texture = match fields.plugin() {
         "bitmap" => bitmap(&mut fields, cx)?,
         "checkerboard" => checkerboard(&mut fields, role, cx)?,
+        "mesh_attribute" => mesh_attribute(&mut fields, cx)?,
         "rgb" | "srgb" => one(&mut fields, "color", role)?.into(),
         "uniform" => one(&mut fields, "value", role)?.into(),
         "d65" => {
@@ -150,6 +165,21 @@ fn checkerboard(fields: &mut Fields, role: Role, cx: &mut Context) -> Result<Tex
         value1,
         value2,
     })
+}
+
+/// Colours of the mesh. (Whether it has them is seen where it becomes a surface.)
+fn mesh_attribute(fields: &mut Fields, cx: &mut Context) -> Result<Texture, Diagnostic> {
+    let Some((name, property)) = fields.string("name")? else {
+        return Err(fields.missing("name", "the string").hint("such as `vertex_color`"));
+    };
+    if !["vertex_", "face_"].iter().any(|start| name.starts_with(start)) {
+        let message =
+            format!("the attribute `{}` is neither of vertices nor of faces", crate::suggest::shorten(name));
+        return Err(super::tree::error(message, &property.value_origin)
+            .hint("its name begins with `vertex_` or `face_`"));
+    }
+    let scale = fields.float("scale", 1.0, Bounds::NotNegative)?;
+    Ok(Texture::Attribute { attribute: cx.description.add_attribute(name), scale })
 }
 
 /// Where texture coordinates are taken: u′ = u[0]·u + u[1]·v + u[2], and v′ likewise.

@@ -100,7 +100,7 @@ impl Builder {
         };
         let positions = self.vertices.iter().map(|c| pools.positions[c.position as usize]).collect();
         let partly = with_uvs != 0 && with_uvs != self.vertices.len();
-        Some((Mesh { positions, normals, uvs, triangles: self.triangles }, partly))
+        Some((Mesh { positions, normals, uvs, triangles: self.triangles, attributes: Vec::new() }, partly))
     }
 
     /// Gives vertices without a normal that of their triangle, and splits those whose triangles differ.

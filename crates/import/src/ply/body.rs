@@ -1,8 +1,9 @@
 //! The tables of a PLY file.
 
 use caustica_math::{Vec2, Vec3};
-use caustica_scene::description::Mesh;
+use caustica_scene::description::{Domain, Mesh};
 
+use super::attributes::{self, Columns};
 use super::header::{Element, Encoding, Header, Kind, Property};
 use super::{Fault, fault};
 use crate::obj::triangulate::triangulate;
@@ -83,6 +84,11 @@ impl<'b> Numbers<'b> {
         fault(format!("a list of {length} items is too long"), self.line)
     }
 
+    /// How many rows of an element there may be at most.
+    fn rows(&self, element: &Element) -> usize {
+        element.count.min((self.rest.len() / element.properties.len().max(1)) as u64) as usize
+    }
+
     fn skip(&mut self, property: &Property) -> Result<(), Fault> {
         let count = property.list.map_or(Ok(1), |kind| self.length(kind))?;
         (0..count).try_for_each(|_| self.next(property.kind).map(|_| ()))
@@ -130,7 +136,13 @@ fn slot(name: &str) -> Option<usize> {
     })
 }
 
+/// Whether a property of a vertex is one of those.
+pub(super) fn is_usual(name: &str) -> bool {
+    slot(name).is_some()
+}
+
 fn vertices(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(), Fault> {
+    let mut columns = attributes::find(element, (Domain::Vertex, mesh), is_usual);
     let slots: Vec<Option<usize>> = element.properties.iter().map(|p| slot(&p.name)).collect();
     let has = |wanted: std::ops::Range<usize>| wanted.into_iter().all(|slot| slots.contains(&Some(slot)));
     if !has(0..3) {
@@ -143,12 +155,15 @@ fn vertices(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result
     let likely = element.count.min(numbers.rest.len() as u64 / 3) as usize;
     mesh.positions.reserve_exact(likely);
     let (has_normals, has_uvs) = (has(3..6), has(6..8));
+    columns.iter_mut().for_each(|c| c.reserve(numbers.rows(element)));
+    let mut others = vec![0.0_f32; element.properties.len()];
     for _ in 0..element.count {
         let mut values = [0.0_f32; 8];
-        for (property, slot) in element.properties.iter().zip(&slots) {
+        for ((property, slot), other) in element.properties.iter().zip(&slots).zip(&mut others) {
             match slot {
-                Some(slot) if property.list.is_none() => values[*slot] = numbers.next(property.kind)? as f32,
-                _ => numbers.skip(property)?,
+                _ if property.list.is_some() => numbers.skip(property)?,
+                Some(slot) => values[*slot] = numbers.next(property.kind)? as f32,
+                None => *other = numbers.next(property.kind)? as f32,
             }
         }
         let [x, y, z, nx, ny, nz, u, v] = values;
@@ -162,7 +177,9 @@ fn vertices(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result
         if has_uvs {
             mesh.uvs.push(Vec2::new(u, v));
         }
+        columns.iter_mut().for_each(|c| c.push(&others, 1));
     }
+    mesh.attributes.extend(columns.into_iter().map(Columns::finish));
     Ok(())
 }
 
@@ -174,10 +191,14 @@ fn faces(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<us
     }
     let likely = element.count.min(numbers.rest.len() as u64 / 4) as usize;
     mesh.triangles.reserve_exact(likely);
+    let mut columns = attributes::find(element, (Domain::Face, mesh), |_| false);
+    columns.iter_mut().for_each(|c| c.reserve(numbers.rows(element)));
+    let mut values = vec![0.0_f32; element.properties.len()];
     let mut corners: Vec<u32> = Vec::new();
     let mut left_out = 0;
     for _ in 0..element.count {
-        for property in &element.properties {
+        let before = mesh.triangles.len();
+        for (property, value) in element.properties.iter().zip(&mut values) {
             match property.list {
                 Some(kind) if is_corners(property) => {
                     corners.clear();
@@ -190,10 +211,13 @@ fn faces(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<us
                     }
                     left_out += usize::from(!add_face(&corners, mesh, numbers.line)?);
                 }
-                _ => numbers.skip(property)?,
+                None => *value = numbers.next(property.kind)? as f32,
+                Some(_) => numbers.skip(property)?,
             }
         }
+        columns.iter_mut().for_each(|c| c.push(&values, mesh.triangles.len() - before));
     }
+    mesh.attributes.extend(columns.into_iter().map(Columns::finish));
     Ok(left_out)
 }
 

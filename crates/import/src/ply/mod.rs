@@ -1,8 +1,9 @@
 //! Stanford PLY files: text, and binary in both byte orders.
 //!
-//! Read are the positions, normals and texture coordinates of `vertex` and the corners of `face`; other elements and
-//! properties are skipped. Faces may have any number of corners.
+//! Read are the positions, normals and texture coordinates of `vertex`, the corners of `face`, and attributes of both;
+//! other elements and properties are skipped. Faces may have any number of corners.
 
+mod attributes;
 mod body;
 mod header;
 
@@ -47,6 +48,12 @@ pub(crate) fn load(path: &Path, memory: MemoryLimit) -> Result<PlyMesh, Diagnost
         .check(size.saturating_mul(3))
         .map_err(|e| shortage(&format!("the mesh `{name}`"), e).hint("use a mesh of fewer triangles"))?;
     let bytes = files::read(path, LARGEST_FILE).map_err(unreadable)?;
+    // Attributes in bytes grow; damaged headers are told where they are read.
+    let attributes = header::parse(&bytes).map_or(0, |h| attributes::bytes(&h, size));
+    if attributes > 0 {
+        let needed = attributes.saturating_mul(2);
+        memory.check(needed).map_err(|e| shortage(&format!("the mesh `{name}`"), e))?;
+    }
     read_ply(&bytes, &name)
 }
 

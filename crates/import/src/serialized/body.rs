@@ -59,6 +59,7 @@ pub(super) fn read(
             unpack.floats(vertices * has(HAS_COLORS), |[_, _, _]: [f32; 3]| ())?;
             unpack.triangles(triangles)?
         },
+        attributes: Vec::new(),
     };
     check(&mesh)?;
     Ok(mesh)

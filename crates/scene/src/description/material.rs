@@ -3,7 +3,7 @@ use std::sync::Arc;
 use caustica_math::Rgb;
 use serde::{Deserialize, Serialize};
 
-use super::{Distribution, Principled, PrincipledThin, Roughness, Scalar, Wrapper};
+use super::{AttributeId, Distribution, Principled, PrincipledThin, Roughness, Scalar, Wrapper};
 use crate::Origin;
 
 /// The index of an image in [`super::Description::images`].
@@ -50,6 +50,13 @@ pub enum Texture {
         image: ImageId,
         /// How uv coordinates are placed on it.
         transform: TextureTransform,
+    },
+    /// An attribute of the mesh, which must have it.
+    Attribute {
+        /// Its name.
+        attribute: AttributeId,
+        /// Factor on its values.
+        scale: f32,
     },
 }
 

@@ -11,6 +11,7 @@
 //! Of surfaces that coincide the one that comes first is seen where a ray meets both at the same distance, and
 //! otherwise either, by rounding; rays that leave one start beyond the other.
 
+mod attribute;
 mod camera;
 mod instance;
 mod integrator;
@@ -23,6 +24,7 @@ mod wrapper;
 
 use serde::{Deserialize, Serialize};
 
+pub use attribute::{Attribute, AttributeId, Domain};
 pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
 pub use instance::{Group, GroupId, Instance};
@@ -49,6 +51,9 @@ pub struct Description {
     pub samples: u32,
     /// Images, named by textures and environment maps.
     pub images: Vec<Image>,
+    /// Names of attributes of meshes, each once, named by textures.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub attributes: Vec<String>,
     /// Materials, named by shapes.
     pub materials: Vec<Material>,
     /// Surfaces, with their materials and, for lamps, their emission.
@@ -74,6 +79,15 @@ impl Description {
     /// numbers them so.
     pub fn all_shapes(&self) -> impl Iterator<Item = &Shape> {
         self.shapes.iter().chain(self.groups.iter().flat_map(|g| &g.shapes))
+    }
+
+    /// The id of an attribute's name, which is added if it is new.
+    pub fn add_attribute(&mut self, name: &str) -> AttributeId {
+        let known = self.attributes.iter().position(|n| n == name);
+        AttributeId(known.unwrap_or_else(|| {
+            self.attributes.push(name.to_owned());
+            self.attributes.len() - 1
+        }) as u32)
     }
 
     /// Adds an image and returns its id.

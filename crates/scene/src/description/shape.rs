@@ -1,7 +1,7 @@
 use caustica_math::{Transform, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{MaterialId, Texture};
+use super::{Attribute, MaterialId, Texture};
 use crate::Origin;
 
 /// A surface with its material and, if it is a lamp, its emission. It may lie in glass, or around the camera.
@@ -51,4 +51,7 @@ pub struct Mesh {
     /// is an error. The geometric normal is (b − a) × (c − a), turned where all three shading
     /// normals are on its other side.
     pub triangles: Vec<[u32; 3]>,
+    /// What textures may look up. Those that no texture looks up are dropped.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub attributes: Vec<Attribute>,
 }

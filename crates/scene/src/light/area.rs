@@ -2,7 +2,7 @@ use std::f32::consts::PI;
 
 use caustica_math::elementary::safe_sqrt;
 use caustica_math::spherical::{between, cross, dot};
-use caustica_math::{AreaPdf, Distribution1d, Frame, Mass, SolidAnglePdf, Spectrum, Vec2, Vec3, warp};
+use caustica_math::{AreaPdf, Distribution1d, Frame, Mass, SolidAnglePdf, Spectrum, Vec3, warp};
 
 use super::lights::{LEAST_SHARE, Part};
 use super::quad::Quad;
@@ -11,7 +11,7 @@ use super::tree::{Cone as Normals, Item, Leaf};
 use super::{Anchor, Emission, EmissionPdf, LightPoint, Surroundings};
 use crate::bvh::SphereData;
 use crate::description::Texture;
-use crate::surface::{FlatShape, SurfacePoint};
+use crate::surface::{FlatShape, Site, SurfacePoint};
 
 /// A surface that emits from the side of its normal.
 #[derive(Debug)]
@@ -49,9 +49,12 @@ impl AreaLight {
     /// From a shape of the scene; returns it with its power in W. `None` if it emits nothing.
     pub fn new(shape: &FlatShape, radiance: Texture, around: &Surroundings<'_>) -> Option<(Self, f64)> {
         let first = shape.first_primitive;
-        let luminance = |p: &SurfacePoint| around.textures.rgb(&radiance, p.uv).luminance();
+        let luminance = |p: &SurfacePoint| {
+            around.textures.at(Site::of(p, around.surfaces)).rgb(&radiance, p.uv).luminance()
+        };
         // The probes may all miss a texture's bright spots, but no lamp may be lost that emits anywhere.
-        let least = UNIFORM_PART * around.textures.mean_luminance(&radiance);
+        let here = around.textures.at(around.surfaces.site_on(first));
+        let least = UNIFORM_PART * here.mean_luminance(&radiance);
         if let Some(data) = around.surfaces.sphere(first) {
             let mean = sphere_mean(first, around, &luminance).max(least);
             let (pi, radius) = (f64::from(PI), f64::from(data.radius));
@@ -93,10 +96,11 @@ impl AreaLight {
         Some((Self { radiance, surface }, f64::from(PI) * f64::from(mean.max(least)) * total_area))
     }
 
-    /// The radiance at texture coordinates `uv`.
+    /// The radiance at a point of it.
     #[inline]
-    pub fn radiance_at(&self, uv: Vec2, around: &Surroundings<'_>) -> Spectrum {
-        around.textures.spectrum(&self.radiance, uv, around.wavelengths)
+    pub fn radiance_at(&self, point: &LightPoint, around: &Surroundings<'_>) -> Spectrum {
+        let textures = around.textures.at(around.surfaces.site_of(point));
+        textures.spectrum(&self.radiance, point.uv, around.wavelengths)
     }
 
     /// Its parts for the hierarchy, given its index among the lamps and its power.
@@ -214,7 +218,7 @@ impl AreaLight {
             point,
             origin,
             direction,
-            radiance: self.radiance_at(point.uv, around),
+            radiance: self.radiance_at(&point, around),
             cos,
             pdf,
         })
@@ -234,7 +238,7 @@ impl AreaLight {
             point,
             origin: point.off_surface(direction),
             direction,
-            radiance: self.radiance_at(point.uv, around),
+            radiance: self.radiance_at(&point, around),
             cos: 1.0,
             pdf: EmissionPdf { point: pdf, direction: SolidAnglePdf(1.0) },
         }

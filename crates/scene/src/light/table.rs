@@ -125,12 +125,12 @@ impl LightQuery<'_> {
         match self.lights.get(point.light) {
             Light::Area(l) => {
                 if point.normal.dot(direction) > 0.0 {
-                    l.radiance_at(point.uv, &self.around)
+                    l.radiance_at(point, &self.around)
                 } else {
                     Spectrum::ZERO
                 }
             }
-            Light::Collimated(l) => l.radiance_at(point.uv, &self.around),
+            Light::Collimated(l) => l.radiance_at(point, &self.around),
             Light::Point { intensity, .. } => *intensity,
             Light::Spot(l) => l.intensity_in(direction, &self.around),
             Light::Projector(l) => l.intensity_in(direction, &self.around),

@@ -81,13 +81,14 @@ impl Surfaces {
             first_position: self.positions.len() as u32,
             first_normal: NONE,
             first_uv: NONE,
+            first_attribute: self.attributes.len() as u32,
         }
     }
 
     fn add_mesh(
         &mut self,
         index: u32,
-        mesh: Mesh,
+        mut mesh: Mesh,
         shape: &Shape,
         warnings: &mut Vec<Diagnostic>,
     ) -> Result<(), Diagnostic> {
@@ -103,8 +104,8 @@ impl Surfaces {
         }
         self.add_vertices(&mut flat, &mesh, shape)?;
         warn_of_useless(&self.normals[self.normals.len() - mesh.normals.len()..], &mesh, shape, warnings);
-        let (mut degenerate, mut kept) = (0usize, 0u32);
-        for corners in &mesh.triangles {
+        let (mut degenerate, mut kept) = (Vec::new(), 0u32);
+        for (number, corners) in mesh.triangles.iter().enumerate() {
             if let Some(corner) = corners.iter().find(|c| **c as usize >= count) {
                 let what = format!("has a triangle whose corner {corner} does not exist");
                 return Err(shape_error(shape, &what)
@@ -116,7 +117,7 @@ impl Surfaces {
                     self.triangle_shapes.push(index);
                     kept += 1;
                 }
-                None => degenerate += 1,
+                None => degenerate.push(number),
             }
         }
         flat.primitive_count = kept;
@@ -124,15 +125,17 @@ impl Surfaces {
             return Err(shape_error(shape, "has no triangle with an area")
                 .hint("check that the mesh file is not empty and the transform does not flatten it"));
         }
-        if degenerate > 0 {
+        if !degenerate.is_empty() {
             warnings.push(
                 Diagnostic::warning(format!(
-                    "{}: left out {degenerate} triangles without an area",
-                    shape.name
+                    "{}: left out {} triangles without an area",
+                    shape.name,
+                    degenerate.len()
                 ))
                 .at(shape.origin.clone()),
             );
         }
+        self.add_attributes(std::mem::take(&mut mesh.attributes), &degenerate);
         self.shapes.push(flat);
         Ok(())
     }

@@ -109,8 +109,8 @@ impl Surfaces {
 
     /// Some point of a shape, wherever its group stands.
     pub fn some_point(&self, shape: u32) -> SurfacePoint {
-        if let Some(group) = self.groups.iter().rev().find(|g| g.first_shape <= shape) {
-            return SurfacePoint { shape, ..group.surfaces.some_point(shape - group.first_shape) };
+        if let Some((surfaces, inside)) = self.group_of(shape) {
+            return SurfacePoint { shape, ..surfaces.some_point(inside) };
         }
         let primitive = self.shapes[shape as usize].first_primitive;
         match self.sphere(primitive) {
@@ -146,6 +146,17 @@ impl Surfaces {
     /// How many instances there are.
     pub fn instances(&self) -> usize {
         self.instances.len()
+    }
+
+    /// The surfaces of a shape's group, and its number among them.
+    pub(super) fn group_of(&self, shape: u32) -> Option<(&Self, u32)> {
+        let group = self.groups.iter().rev().find(|g| g.first_shape <= shape)?;
+        Some((&group.surfaces, shape - group.first_shape))
+    }
+
+    /// The surfaces of each group, to be changed.
+    pub(super) fn groups_mut(&mut self) -> impl Iterator<Item = &mut Self> {
+        self.groups.iter_mut().map(|g| &mut g.surfaces)
     }
 
     /// The surfaces of each group, in its own frame.

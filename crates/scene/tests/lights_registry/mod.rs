@@ -9,10 +9,13 @@ mod thrown;
 use std::f64::consts::PI;
 
 use caustica_math::{Rgb, SampleStream, StreamId, Transform, Vec3, Wavelengths};
-use caustica_scene::description::{EnvironmentRows, Image, ImageId, LightKind, Texture, TextureTransform};
+use caustica_scene::description::{
+    Domain, EnvironmentRows, Image, ImageId, LightKind, Texture, TextureTransform,
+};
 use caustica_scene::light::{Anchor, EnvironmentLight, Light, LightPoint, LightQuery};
 use caustica_scene::{Description, Scene};
 use caustica_testkit::build;
+use caustica_testkit::materials::attribute;
 use caustica_testkit::seed::seed;
 
 /// A lamp, alone in its scene, and its power in W (as luminance).
@@ -182,7 +185,21 @@ fn meshes() -> Vec<Example> {
         ),
         finish("mesh with a spark", lamp(image, Some(spark)), PI * 2.0 * 500.0 / 1024.0, vec![]),
         finish("ball of triangles", ball, PI * area * luminance(), around),
+        by_attribute(Domain::Vertex, vec![beside]),
+        by_attribute(Domain::Face, vec![beside]),
     ]
+}
+
+/// One by two metres, of two triangles in colours of their own or of four corners, whose mean is that of 1 and 3.
+fn by_attribute(domain: Domain, views: Vec<View>) -> Example {
+    let mut d = build::scene(8);
+    let m = build::diffuse(&mut d, 0.0);
+    let q = build::quad(&mut d, [-0.5, 2.0, -1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 2.0], m);
+    let emission = attribute(&mut d, q, domain, |i| Rgb::splat(if i % 2 == 0 { 1.0 } else { 3.0 }));
+    d.shapes[q].emission = Some(emission);
+    let mean = if domain == Domain::Face { 2.0 } else { (2.0 * 1.0 + 3.0) / 3.0 };
+    let name = if domain == Domain::Face { "faces" } else { "corners" };
+    finish(name, d, PI * 2.0 * mean, views)
 }
 
 fn area_of(d: &Description) -> f64 {
