@@ -135,3 +135,15 @@ fn scenes() {
         assert!(e.origin.is_some(), "{e}");
     }
 }
+
+/// A few bytes ask for each mesh that stands for a stretched sphere.
+#[test]
+fn meshes_that_mitsuba_scenes_ask_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = "<shape type='sphere'><boolean name='flip_normals' value='true'/></shape>";
+    let camera = "<sensor type='perspective'/>";
+    let text = format!("<scene version='3.0.0'>{camera}{}</scene>", ball.repeat(50));
+    let path = write(&folder, "balls.xml", text);
+    is_shortage(&load_within(&path, MemoryLimit::Bytes(20 * MEGABYTE)).unwrap_err(), "the scene's meshes");
+    assert!(load_within(&path, MemoryLimit::Bytes(500 * MEGABYTE)).is_ok());
+}

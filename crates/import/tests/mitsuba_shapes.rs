@@ -184,6 +184,7 @@ fn what_instances_cannot_be() {
     refused(&with(nested), "holds no instances");
     let lamp = "<shape type='shapegroup'>§<shape type='cube'><emitter type='area'/></shape></shape>";
     refused(&with(lamp), "stands in a shapegroup");
+    refused(&with(&lamp.replace("'area'", "'directionalarea'")), "stands in a shapegroup");
     let meter =
         "<shape type='shapegroup'>§<shape type='cube'><sensor type='irradiancemeter'/></shape></shape>";
     refused(&with(meter), "with its sensor");

@@ -3,7 +3,9 @@
 use caustica_math::memory::{MemoryLimit, MemoryShortage};
 
 use crate::bvh::TreeQuality;
-use crate::description::{Description, Geometry, ImageId, LightKind, MaterialKind, Shape, Texture};
+use crate::description::{
+    CameraKind, Description, Geometry, ImageId, LightKind, MaterialKind, Shape, Texture,
+};
 use crate::diagnostic::{Cause, Diagnostic};
 use crate::light::Light;
 
@@ -29,6 +31,9 @@ const ENVIRONMENT_PIXEL: u64 = 12;
 /// Bytes of an instance: its transforms, its box, and itself in the tree.
 const INSTANCE: u64 = 400;
 
+/// Bytes of an irradiance meter's tables for each triangle.
+const METER_TRIANGLE: u64 = 80;
+
 /// The most bytes that [`Scene::within`](crate::Scene::within) takes at a time, beside the description's own.
 pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
     let size = |s: &Shape| match &s.geometry {
@@ -51,6 +56,9 @@ pub fn needed(d: &Description, tree: TreeQuality) -> u64 {
         }
     }
     tables += INSTANCE * d.instances.len() as u64;
+    if let CameraKind::IrradianceMeter { shape } = d.camera.kind {
+        tables += METER_TRIANGLE * d.shapes.get(shape as usize).map_or(0, |s| size(s).0);
+    }
     for light in &d.lights {
         lamps += LAMP + LAMP_PART + size_of::<Light>() as u64 + tables_of(&light.kind, d);
     }

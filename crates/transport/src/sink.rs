@@ -44,7 +44,7 @@ pub trait Sink {
 pub struct Contribution<'a> {
     /// The strategy.
     pub strategy: Strategy,
-    /// The unweighted estimate: the path's measured radiance over its density. (For a sink without
+    /// The unweighted estimate: the path's measured radiance over its density, that of aimed rays with it. (For a sink without
     /// [`Sink::KEEPS_ALL`] also over the probability with which it survived among the small ones.)
     pub unweighted: Spectrum,
     /// The MIS factor.

@@ -59,6 +59,25 @@ fn the_picture_is_the_same_with_any_number_of_them() {
     }
 }
 
+/// Balls that are seen thousands of times as far away as they are wide, off the axes, so that directions are rounded. At
+/// their borders they mirror the sky behind them.
+#[test]
+fn small_casters_are_as_bright_with_any_number_of_rays() {
+    for turn in 0..12 {
+        let mut d = scene(1);
+        look(&mut d, [0.1, 1.0, 0.2], [0.03, 0.0, 0.07]);
+        d.camera.kind = CameraKind::RadianceMeter;
+        let grey = d.add_material(MaterialKind::Diffuse { albedo: Rgb::splat(0.6).into() });
+        let mirror = d.add_material(MaterialKind::Mirror { reflectance: Rgb::WHITE });
+        quad(&mut d, [-1.0, 0.0, -1.0], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0], grey);
+        let (x, z) = (5.77 + 0.17 * turn as f32, 6.93 - 0.31 * turn as f32);
+        sphere(&mut d, [x, 4.3, z], 1e-3, mirror);
+        light(&mut d, LightKind::Constant { radiance: Rgb::WHITE });
+        let [none, twenty] = [0, 20].map(|rays| render(&d, rays, (70, 20_000)).whole.mean);
+        assert!((twenty / none - 1.0).abs() < 1e-3, "{turn}: {twenty:e}, {none:e}");
+    }
+}
+
 /// Squares of what the lamps add that are found beyond a point of the floor that is itself seen in a mirror or in glass.
 #[derive(Default)]
 struct Squares {

@@ -53,17 +53,18 @@ impl Judge<'_> {
         if judgement.uncertainty > UNCERTAIN {
             return Ok(false);
         }
-        let (estimate, expected) = (lanes(c.unweighted), judgement.estimate(c.strategy));
+        let (estimate, mut expected) = (lanes(c.unweighted), judgement.estimate(c.strategy));
+        if c.strategy.s == 0 {
+            let share = judgement.walk_share(self.aimed_rays, &self.settings.strategies);
+            expected = expected.map(|f| f * share);
+        }
         let largest = expected.iter().fold(0.0_f64, |a, b| a.max(*b));
         let close = |lane: usize| (estimate[lane] - expected[lane]).abs() <= TOLERANCE * largest;
         if !(0..3).all(close) {
             let ratio = [0, 1, 2].map(|lane| estimate[lane] / expected[lane]);
             return Err(format!("estimate {estimate:?} is {ratio:?} of what it should be; {judgement:?}"));
         }
-        let mut weight = judgement.weight(c.strategy, &self.settings.strategies, self.settings.heuristic);
-        if c.strategy.s == 0 {
-            weight *= judgement.walk_share(self.aimed_rays, &self.settings.strategies);
-        }
+        let weight = judgement.weight(c.strategy, &self.settings.strategies, self.settings.heuristic);
         let close = (f64::from(c.weight) - weight).abs() <= TOLERANCE;
         if !close {
             return Err(format!("weight {} should be {weight}; {judgement:?}", c.weight));

@@ -43,8 +43,8 @@ infinity-jacobian|transport|s/None => Edge::INFINITE,/None => Edge::finite(4.0),
 mirrored-winding|scene|s/let mut outward = if mirrored { -normal } else { normal };/let mut outward = normal; let _ = mirrored;/|$rows mirrored_transforms
 candidates-unpaid|transport|s/let value = c.value \* (1.0 \/ survival);/let value = c.value;/|-p caustica-transport --test candidates
 stratum-shared|math|s/key: mix64(of_tile.wrapping_add(u64::from(walk) << 16)),/key: of_tile,/|-p caustica-transport --test samplers
-aimed-unshared|transport|s/let density = scatter.forward.0 + .*/let density = scatter.forward.0;/|$identity
-aimed-too-often|transport|s/share \* weight(0.0, one_less + further)/weight(0.0, one_less + further)/|$identity
+aimed-unshared|transport|s/let density = scatter.forward.0 + self.aimed_rays.*/let density = scatter.forward.0;/|$identity
+aimed-too-often|transport|s/junction, value \* share);/junction, value); let _ = share;/|$identity
 pyramid-remainder|render|s/if i == last { left } else/if false { left } else/|-p caustica-render --test pyramid
 seed-ignored|transport|s/seed: self.settings.seed,/seed: 0,/|$rows seeds
 TABLE

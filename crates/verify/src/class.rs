@@ -122,11 +122,6 @@ impl PathClass {
         self.tail & 1 != 0
     }
 
-    /// Whether it holds two D in a row, which inner connections need.
-    pub fn has_pair(&self) -> bool {
-        self.pair
-    }
-
     /// Whether it holds any D: light that is scattered, and not the mere image of a lamp.
     pub fn has_diffuse(&self) -> bool {
         self.runs > 1 || self.first()

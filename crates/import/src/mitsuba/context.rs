@@ -44,6 +44,8 @@ pub(super) struct Context<'c> {
     default_materials: [Option<MaterialId>; 2],
     /// What may still come.
     left: Limits,
+    /// Bytes of the meshes that were made and not read.
+    made: u64,
 }
 
 impl<'c> Context<'c> {
@@ -65,6 +67,7 @@ impl<'c> Context<'c> {
             groups: BTreeMap::new(),
             default_materials: [None; 2],
             left,
+            made: 0,
         }
     }
 
@@ -97,9 +100,7 @@ impl<'c> Context<'c> {
         };
         let placed = |e: Diagnostic| if e.origin.is_some() { e } else { e.at(Some(origin.clone())) };
         let mesh = if let Some(mesh) = self.meshes.get(&(path.clone(), format)) {
-            let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs);
-            let attributes: usize = mesh.attributes.iter().map(|a| size_of_val(&*a.values)).sum();
-            let bytes = (bytes + size_of_val(&*mesh.triangles) + attributes) as u64;
+            let bytes = bytes_of(mesh);
             let error = |e| placed(shortage(&format!("another copy of the mesh `{file}`"), e));
             self.paths.folder.memory.check(bytes).map_err(error)?;
             mesh.clone()
@@ -111,10 +112,23 @@ impl<'c> Context<'c> {
             }
             mesh
         };
+        self.take_triangles(&mesh, origin)?;
+        Ok(mesh)
+    }
+
+    /// Counts a mesh that is made for a shape described at `origin`, and not read from a file: a few bytes of XML ask
+    /// for it.
+    pub(super) fn count_made(&mut self, mesh: &Mesh, origin: &Origin) -> Result<(), Diagnostic> {
+        self.made += bytes_of(mesh);
+        let error = |e| shortage("the scene's meshes", e).at(Some(origin.clone()));
+        self.paths.folder.memory.check(self.made).map_err(error)?;
+        self.take_triangles(mesh, origin)
+    }
+
+    fn take_triangles(&mut self, mesh: &Mesh, origin: &Origin) -> Result<(), Diagnostic> {
         let most = Limits::of(self.paths.folder.trust).triangles;
         take(&mut self.left.triangles, mesh.triangles.len())
-            .ok_or_else(|| super::tree::error(format!("the scene has more than {most} triangles"), origin))?;
-        Ok(mesh)
+            .ok_or_else(|| super::tree::error(format!("the scene has more than {most} triangles"), origin))
     }
 
     fn read_mesh(
@@ -195,4 +209,11 @@ pub(super) enum Format {
     Ply,
     /// With the number of the mesh in the file.
     Serialized(u32),
+}
+
+/// How many bytes a mesh takes.
+fn bytes_of(mesh: &Mesh) -> u64 {
+    let attributes: usize = mesh.attributes.iter().map(|a| size_of_val(&*a.values)).sum();
+    let corners = size_of_val(&*mesh.positions) + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs);
+    (corners + size_of_val(&*mesh.triangles) + attributes) as u64
 }

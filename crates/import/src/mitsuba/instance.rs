@@ -21,9 +21,9 @@ pub(super) fn group(index: usize, cx: &mut Context) -> Result<Option<GroupId>, D
             let message = "a shapegroup holds no instances and no other shapegroup";
             return Err(error(message, &child.origin).hint("instance each group by itself"));
         }
-        let meters = cx.meters.len();
+        let (meters, lights) = (cx.meters.len(), cx.description.lights.len());
         let Some(shape) = shape::read_surface(Fields::new(cx.tree, inner), cx)? else { continue };
-        if shape.emission.is_some() {
+        if shape.emission.is_some() || cx.description.lights.len() > lights {
             let message = format!("the lamp `{}` stands in a shapegroup", shape.name);
             return Err(
                 error(message, &child.origin).hint("what has instances cannot emit: put it beside them")

@@ -68,6 +68,12 @@ pub(super) fn read_surface(mut fields: Fields, cx: &mut Context) -> Result<Optio
     let to_world = fields.transform("to_world")?;
     let flipped = fields.boolean("flip_normals", false)? ^ fields.boolean("flip_normal", false)?;
     let mut surface = surface(&mut fields, (to_world, flipped), cx)?;
+    let from_file = ["obj", "ply", "serialized"].contains(&fields.plugin());
+    if let Geometry::Mesh(mesh) = &surface.geometry
+        && !from_file
+    {
+        cx.count_made(mesh, &fields.object.origin)?;
+    }
     if let Geometry::Mesh(mesh) = &mut surface.geometry
         && surface.flipped
     {

@@ -31,7 +31,7 @@ struct Chain<'a> {
     ray: Ray,
     /// Throughput without the density, over that of all ways to make the path.
     throughput: Spectrum,
-    /// What the walk's estimate would be multiplied by.
+    /// How often the walk makes the path, of all times that it is made.
     share: f32,
     /// The product of (n_camera/n_light)², and what is left beside it, which roulette goes by.
     radiance_scale: f32,
@@ -58,7 +58,12 @@ impl Kernel<'_> {
             for ray in 0..self.aimed_rays {
                 let Some(direction) = aim.sample(spread(u, ray, self.aimed_rays)) else { continue };
                 let Some(scatter) = vertex.scatter(Walk::FromCamera, direction) else { continue };
-                let density = scatter.forward.0 + self.aimed_rays as f32 * aim.pdf(direction).0;
+                let aimed = aim.pdf(direction).0;
+                if aimed <= 0.0 {
+                    // At the very border of a cone, by rounding: counted as beyond it.
+                    continue;
+                }
+                let density = scatter.forward.0 + self.aimed_rays as f32 * aimed;
                 eye.clear();
                 if S::PROBES {
                     eye.extend_from_slice(&sample.eye.vertices[..=i]);
@@ -157,18 +162,16 @@ impl Kernel<'_> {
             return Spectrum::ZERO;
         }
         if S::PROBES {
-            // As the walk would have found it; a direction that it hardly takes is told as it was found.
-            let share = if chain.share > 0.0 { chain.share } else { 1.0 };
             let mut weights = sample.weights.borrow_mut();
             weights.clear();
             if S::WEIGHS_ALL {
-                weights.push(share);
+                weights.push(chain.share);
                 weights.resize(edges + 1, 0.0);
             }
             sink.contribution(&Contribution {
                 strategy: Strategy { s: 0, t: edges as u32 + 1 },
-                unweighted: value * (1.0 / share),
-                weight: share,
+                unweighted: value,
+                weight: 1.0,
                 film: sample.film,
                 filter_weight: sample.filter_weight,
                 path: PathView { lamp, light: &[], eye: chain.eye, camera: sample.camera },

@@ -58,7 +58,9 @@ impl Kernel<'_> {
         let pdf = lights.emission_pdf(&end.lamp, end.direction);
         let junction = Junction { light: (0.0, 0.0), eye: (pdf.point.0, pdf.direction.0) };
         let strategy = Strategy { s: 0, t: t as u32 };
-        let joined = sample.joined(strategy, (end.lamp, pdf.point.0), junction, value);
+        // What aimed rays find too, they share.
+        let share = if t > 2 { self.walk_share(&sample.eye.vertices[..t - 2]) } else { 1.0 };
+        let joined = sample.joined(strategy, (end.lamp, pdf.point.0), junction, value * share);
         self.finish(
             sample,
             &joined,
@@ -76,9 +78,8 @@ impl Kernel<'_> {
                         h.of(share * lights.towards_pdf(from.receiver(), &end.lamp).0 / end.forward)
                     }
                 };
-                let share = if t > 2 { self.walk_share(&sample.eye.vertices[..t - 2]) } else { 1.0 };
                 let further = h.of(pdf.point.0 * pdf.direction.0 * end.sums.past);
-                share * weight(0.0, one_less + further)
+                weight(0.0, one_less + further)
             },
             sink,
         )
