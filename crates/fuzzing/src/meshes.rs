@@ -20,9 +20,20 @@ pub fn named() -> Vec<(&'static str, Vec<u8>)> {
     vec![("m.ply", PLY.as_bytes().to_vec()), ("m.serialized", serialized_file(4, &[0x1003, 0x2000]))]
 }
 
-/// PLY files: text, both byte orders, and one of plain rows.
+/// Colours of corners and a number of faces.
+const COLOURED: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+    property float r\nproperty float g\nproperty float b\nelement face 1\nproperty uchar heat_x\n\
+    property list uchar int vertex_indices\nend_header\n0 0 0 1 0 0\n1 0 0 0 1 0\n1 1 0 0 0 1\n7 3 0 1 2\n";
+
+/// PLY files: text, both byte orders, one of plain rows, and one with attributes.
 pub fn ply() -> Vec<Vec<u8>> {
-    vec![PLY.as_bytes().to_vec(), binary_ply(false), binary_ply(true), plain_ply()]
+    vec![
+        PLY.as_bytes().to_vec(),
+        binary_ply(false),
+        binary_ply(true),
+        plain_ply(),
+        COLOURED.as_bytes().to_vec(),
+    ]
 }
 
 /// The text in binary.

@@ -237,7 +237,7 @@ impl Scene {
 
     /// The textures, at a point.
     #[inline(always)]
-    pub(crate) fn textures_at(&self, point: &SurfacePoint) -> TextureTable<'_> {
+    pub(crate) fn textures_at<'a>(&'a self, point: &'a SurfacePoint) -> TextureTable<'a> {
         self.textures().at(Site::of(point, &self.surfaces))
     }
 

@@ -64,15 +64,15 @@ fn check(d: Description, to_world: &Transform, domain: Domain) {
 #[test]
 fn colours_lie_where_their_corners_are() {
     let place = Transform::rotate(30.0, [0.3, 1.0, -0.2]).then(Transform::translate([0.0, 100.0, 3.0]));
-    for to_world in [place.clone(), Transform::scale([-1.0, 2.0, 1.0]).then(place)] {
+    for to_world in [place, Transform::scale([-1.0, 2.0, 1.0]).then(place)] {
         for domain in [Domain::Vertex, Domain::Face] {
-            let d = description(domain, to_world.clone());
+            let d = description(domain, to_world);
             check(d.clone(), &to_world, domain);
             // With attributes of the same name in groups, and in none.
             let mut grouped = d.clone();
             grouped.shapes[1].to_world = Transform::scale([1.0, 3.0, 1.0]);
             let group = build::group(&mut grouped, 1);
-            let placed = Transform::scale([1.0, 3.0, 1.0]).inverse().then(to_world.clone());
+            let placed = Transform::scale([1.0, 3.0, 1.0]).inverse().then(to_world);
             build::instance(&mut grouped, group, Transform::translate([0.0, -500.0, 0.0]));
             build::instance(&mut grouped, group, placed);
             check(grouped, &to_world, domain);

@@ -111,16 +111,16 @@ fn cameras() {
 
 #[test]
 fn references() {
-    refuses("scene.xml:3: floor names a material or an image that does not exist", |d| {
+    refuses("scene.xml:3: floor names a material, an image or an attribute that does not exist", |d| {
         d.shapes[0].material = MaterialId(7);
     });
-    refuses("scene.xml:4: lamp names a material or an image that does not exist", |d| {
+    refuses("scene.xml:4: lamp names a material, an image or an attribute that does not exist", |d| {
         d.shapes[1].emission = Some(PICTURE);
     });
-    refuses("scene.xml:2: a material's texture names an image that does not exist", |d| {
+    refuses("scene.xml:2: a material's texture names an image or an attribute that does not exist", |d| {
         d.materials[0].kind = MaterialKind::Diffuse { albedo: PICTURE };
     });
-    refuses("scene.xml:2: a material's texture names an image that does not exist", |d| {
+    refuses("scene.xml:2: a material's texture names an image or an attribute that does not exist", |d| {
         d.materials[0].kind =
             MaterialKind::Microfacet { alpha: 0.1, interior_ior: 1.5, exterior_ior: 1.0, kd: PICTURE };
     });

@@ -53,7 +53,7 @@ impl AreaLight {
             around.textures.at(Site::of(p, around.surfaces)).rgb(&radiance, p.uv).luminance()
         };
         // The probes may all miss a texture's bright spots, but no lamp may be lost that emits anywhere.
-        let here = around.textures.at(around.surfaces.site_on(first));
+        let here = around.textures.at(around.surfaces.site_on(around.surfaces.shape_of(first)));
         let least = UNIFORM_PART * here.mean_luminance(&radiance);
         if let Some(data) = around.surfaces.sphere(first) {
             let mean = sphere_mean(first, around, &luminance).max(least);

@@ -4,7 +4,6 @@ use caustica_math::spherical::{between, cross, dot};
 use caustica_math::{Rgb, Vec3};
 
 use super::{FlatShape, SurfacePoint, Surfaces};
-use crate::bvh::Hit;
 use crate::description::{Attribute, AttributeId, Domain};
 use crate::light::LightPoint;
 
@@ -22,58 +21,66 @@ pub(super) struct FlatAttribute {
 #[derive(Clone, Copy, Debug)]
 pub struct Site<'a> {
     surfaces: &'a Surfaces,
-    /// Number of the shape among all; if nobody knows, the primitive's.
-    shape: Option<u32>,
-    primitive: u32,
-    instance: u32,
-    position: Vec3,
+    at: At<'a>,
+}
+
+/// By reference, because hardly any look-up wants to know.
+#[derive(Clone, Copy, Debug)]
+enum At<'a> {
+    Point(&'a SurfacePoint),
+    Lamp(&'a LightPoint),
+    Shape(u32),
 }
 
 impl<'a> Site<'a> {
     /// The place of a point.
     #[inline(always)]
-    pub fn of(point: &SurfacePoint, surfaces: &'a Surfaces) -> Self {
-        let SurfacePoint { shape, primitive, instance, position, .. } = *point;
-        Self { surfaces, shape: Some(shape), primitive, instance, position }
+    pub fn of(point: &'a SurfacePoint, surfaces: &'a Surfaces) -> Self {
+        Self { surfaces, at: At::Point(point) }
     }
 
     /// The value of an attribute here; black if the shape has none of that name.
     #[cold]
     #[inline(never)]
     pub(crate) fn attribute(&self, id: AttributeId) -> Rgb {
-        let shape = self.shape();
-        match self.surfaces.group_of(shape) {
-            None => self.surfaces.attribute_at(id, shape, (self.primitive, self.position)),
-            Some((surfaces, shape)) => {
-                let place = self.surfaces.instances.get(self.instance as usize);
-                let position = place.map_or(self.position, |i| i.to_group.point(self.position));
-                surfaces.attribute_at(id, shape, (self.primitive, position))
+        let surfaces = self.surfaces;
+        match self.at {
+            At::Shape(_) => Rgb::BLACK,
+            At::Lamp(LightPoint { primitive, at, .. }) => {
+                surfaces.attribute_at(id, surfaces.shape_of(*primitive), (*primitive, *at))
+            }
+            At::Point(SurfacePoint { shape, primitive, instance, position, .. }) => {
+                let Some((inside, shape)) = surfaces.group_of(*shape) else {
+                    return surfaces.attribute_at(id, *shape, (*primitive, *position));
+                };
+                let place = surfaces.instances.get(*instance as usize);
+                let position = place.map_or(*position, |i| i.to_group.point(*position));
+                inside.attribute_at(id, shape, (*primitive, position))
             }
         }
     }
 
-    /// All values of an attribute of the shape.
+    /// All values of an attribute of the shape, which is in no group.
     pub(crate) fn attribute_values(&self, id: AttributeId) -> &'a [Rgb] {
-        self.surfaces.attribute_values(id, self.shape())
-    }
-
-    fn shape(&self) -> u32 {
-        self.shape.unwrap_or_else(|| self.surfaces.shape_of(self.primitive))
+        let shape = match self.at {
+            At::Point(point) => point.shape,
+            At::Lamp(point) => self.surfaces.shape_of(point.primitive),
+            At::Shape(shape) => shape,
+        };
+        self.surfaces.attribute_values(id, shape)
     }
 }
 
 impl Surfaces {
     /// The place of a lamp's point.
     #[inline(always)]
-    pub(crate) fn site_of(&self, point: &LightPoint) -> Site<'_> {
-        Site { position: point.at, ..self.site_on(point.primitive) }
+    pub(crate) fn site_of<'a>(&'a self, point: &'a LightPoint) -> Site<'a> {
+        Site { surfaces: self, at: At::Lamp(point) }
     }
 
-    /// Anywhere on a primitive that is in no group.
-    #[inline(always)]
-    pub(crate) fn site_on(&self, primitive: u32) -> Site<'_> {
-        let position = Vec3::ZERO;
-        Site { surfaces: self, shape: None, primitive, instance: Hit::NO_INSTANCE, position }
+    /// Nowhere in particular on a shape: for all values of an attribute.
+    pub(crate) fn site_on(&self, shape: u32) -> Site<'_> {
+        Site { surfaces: self, at: At::Shape(shape) }
     }
 
     /// Takes the attributes of the mesh that becomes the next shape; `left_out` are the triangles that it lost.

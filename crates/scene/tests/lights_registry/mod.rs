@@ -198,7 +198,7 @@ fn by_attribute(domain: Domain, views: Vec<View>) -> Example {
     let emission = attribute(&mut d, q, domain, |i| Rgb::splat(if i % 2 == 0 { 1.0 } else { 3.0 }));
     d.shapes[q].emission = Some(emission);
     let mean = if domain == Domain::Face { 2.0 } else { (2.0 * 1.0 + 3.0) / 3.0 };
-    let name = if domain == Domain::Face { "faces" } else { "corners" };
+    let name = if domain == Domain::Face { "textured faces" } else { "textured corners" };
     finish(name, d, PI * 2.0 * mean, views)
 }
 
