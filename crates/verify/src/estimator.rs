@@ -83,24 +83,18 @@ impl Estimator {
         (0..=class.edges()).any(made)
     }
 
-    /// Whether it splats light paths.
-    pub fn splats(&self) -> bool {
-        self.strategies.touched().splat
-    }
-
-    /// By how much more often all strategies together make a path than this estimator does, given the weights that all
-    /// strategies have for it, roulette aside. Infinite if it never does.
-    pub fn rarity(&self, weights: &[f32]) -> f64 {
+    /// How often its eye paths make a path, and how often its light image does, over how often all strategies together
+    /// do, given the weights that all strategies have for it; roulette aside.
+    pub fn shares(&self, weights: &[f32]) -> [f64; 2] {
         let edges = weights.len() as u32 - 1;
         let weight = |s: u32| f64::from(weights[s as usize]);
         let emitters = matches!(self.settings.integrator, Integrator::Path(Technique::Emitters));
         // It leaves hits to next-event estimation wherever that can be.
-        let own = if emitters && edges > 1 && weights[1] > 0.0 {
-            weight(1)
-        } else {
-            (0..=edges).filter(|s| self.has(*s, edges).is_some()).map(weight).sum()
-        };
-        1.0 / own
+        if emitters && edges > 1 && weights[1] > 0.0 {
+            return [weight(1), 0.0];
+        }
+        let share = |s: std::ops::Range<u32>| s.filter(|s| self.has(*s, edges).is_some()).map(weight).sum();
+        [share(0..edges), share(edges..edges + 1)]
     }
 }
 
@@ -128,18 +122,18 @@ mod tests {
     }
 
     #[test]
-    fn rarities_are_shares_of_all_strategies() {
+    fn shares_are_those_of_its_strategies() {
         let all = Estimator::all(&Settings::default());
-        let rarity = |name: &str, weights: &[f32]| {
-            all.iter().find(|e| e.name == name).map(|e| e.rarity(weights)).unwrap_or_default()
+        let shares = |name: &str, weights: &[f32]| {
+            all.iter().find(|e| e.name == name).map(|e| e.shares(weights)).unwrap_or_default()
         };
-        let weights = [0.125, 0.25, 0.5, 0.125];
-        assert_eq!(rarity("bdpt", &weights), 1.0);
-        assert_eq!(rarity("naive", &weights), 8.0);
-        assert_eq!(rarity("path_ems", &weights), 4.0);
-        assert_eq!(rarity("path_ems", &[0.125, 0.0, 0.5, 0.375]), 8.0);
-        assert_eq!(rarity("light", &weights), 8.0);
-        assert_eq!(rarity("bdpt, s>=2&t>=2", &weights), 2.0);
-        assert!(rarity("light", &[1.0, 0.0, 0.0, 0.0]).is_infinite());
+        let weights = [0.125, 0.25, 0.375, 0.25];
+        assert_eq!(shares("bdpt", &weights), [0.75, 0.25]);
+        assert_eq!(shares("naive", &weights), [0.125, 0.0]);
+        assert_eq!(shares("path_ems", &weights), [0.25, 0.0]);
+        assert_eq!(shares("path_ems", &[0.125, 0.0, 0.5, 0.375]), [0.125, 0.0]);
+        assert_eq!(shares("light", &weights), [0.0, 0.25]);
+        assert_eq!(shares("bdpt, s>=2&t>=2", &weights), [0.375, 0.0]);
+        assert_eq!(shares("light", &[1.0, 0.0, 0.0, 0.0]), [0.0, 0.0]);
     }
 }

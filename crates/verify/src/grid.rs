@@ -6,7 +6,7 @@ use caustica_scene::Scene;
 use caustica_scene::camera::Camera;
 use caustica_scene::description::Crop;
 
-/// What is known of a block takes up to a quarter of a megabyte.
+/// What is known of a block takes up to half a megabyte.
 const MOST_BLOCKS: usize = 1024;
 
 /// A picture's window, cut into square blocks.

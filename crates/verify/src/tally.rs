@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use caustica_math::filter::PixelFilter;
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::camera::Joins;
 use caustica_transport::{Contribution, Kernel, Sink};
@@ -84,7 +85,11 @@ pub const SIZES: usize = 48;
 /// Sums of contributions, of their squares and of their cubes (without sign).
 pub type Moments = [f64; 3];
 
-/// Contributions by block and by size.
+/// What finds contributions. Each sample has an eye path, so that what those find may be steady; where a light path is
+/// seen is left to chance.
+const WALKS: usize = 2;
+
+/// Contributions by block, by what finds them (eye paths, light paths), and by size.
 #[derive(Clone, Debug, Default)]
 pub struct Powers {
     moments: Vec<Moments>,
@@ -93,23 +98,37 @@ pub struct Powers {
 impl Powers {
     /// None yet.
     pub fn new(blocks: usize) -> Self {
-        Self { moments: vec![[0.0; 3]; blocks * SIZES] }
+        Self { moments: vec![[0.0; 3]; blocks * WALKS * SIZES] }
     }
 
     /// Bytes that a block takes.
     pub fn memory_of_a_block() -> u64 {
-        (SIZES * size_of::<Moments>()) as u64
+        (WALKS * SIZES * size_of::<Moments>()) as u64
     }
 
     /// Adds contributions that are `rarity` times as large and as rare as `value`.
-    fn add(&mut self, block: usize, value: f64, rarity: f64) {
+    fn add(&mut self, (block, walk): (usize, usize), value: f64, rarity: f64) {
+        let rarity = rarity.min(RAREST);
         let size = value.abs() * rarity;
         let exponent = (size.to_bits() >> 52) as i64 - 1023;
         let bin = (exponent.div_euclid(2) + SIZES as i64 / 2).clamp(0, SIZES as i64 - 1);
-        let moments = &mut self.moments[block * SIZES + bin as usize];
+        let moments = &mut self.moments[(block * WALKS + walk) * SIZES + bin as usize];
         moments[0] += value;
         moments[1] += value.abs() * size;
         moments[2] += value.abs() * size * size;
+    }
+
+    /// Adds what is found by both walks in those shares of all findings. `rarities` is by how much rarer a walk finds
+    /// it for other reasons.
+    fn divide(&mut self, block: usize, value: f64, shares: [f64; WALKS], rarities: [f64; WALKS]) {
+        let own: f64 = shares.iter().sum();
+        if own.is_nan() || own <= 0.0 {
+            self.add((block, 0), value, RAREST);
+            return;
+        }
+        for walk in (0..WALKS).filter(|w| shares[*w] > 0.0) {
+            self.add((block, walk), value * (shares[walk] / own), rarities[walk] / own);
+        }
     }
 
     /// Adds others.
@@ -120,14 +139,15 @@ impl Powers {
         }
     }
 
-    /// The contributions to a block, from small to large.
-    pub fn of_block(&self, block: usize) -> &[Moments] {
-        &self.moments[block * SIZES..][..SIZES]
+    /// The contributions to a block by eye paths and by light paths, each from small to large.
+    pub fn of_block(&self, block: usize) -> [&[Moments]; WALKS] {
+        let (eye, light) = self.moments[block * WALKS * SIZES..][..WALKS * SIZES].split_at(SIZES);
+        [eye, light]
     }
 
     /// The sum of a block's contributions.
     pub fn sum(&self, block: usize) -> f64 {
-        self.of_block(block).iter().map(|m| m[0]).sum()
+        self.of_block(block).into_iter().flatten().map(|m| m[0]).sum()
     }
 
     /// The same in the larger blocks of a level.
@@ -135,10 +155,9 @@ impl Powers {
         let [columns, rows] = grid.levels()[level];
         let mut merged = Self::new((columns * rows) as usize);
         for block in 0..grid.blocks() {
-            let larger = grid.ancestor(block, level) * SIZES;
-            for (a, b) in merged.moments[larger..][..SIZES].iter_mut().zip(self.of_block(block)) {
-                add(a, b);
-            }
+            let larger = grid.ancestor(block, level) * WALKS * SIZES;
+            let own = self.of_block(block).into_iter().flatten();
+            merged.moments[larger..].iter_mut().zip(own).for_each(|(a, b)| add(a, b));
         }
         merged
     }
@@ -215,8 +234,22 @@ pub struct Probe<'k, 's> {
     pub estimators: &'k [Estimator],
     /// What the camera can be joined with.
     pub camera: Joins,
+    /// Of the pixel filter, see [`sparsity`].
+    pub sparsity: f64,
     /// Parts of a splat by block, used again.
     pub parts: Vec<(usize, f64)>,
+}
+
+/// By how much rarer and larger the parts of a splat are than what an eye path finds of the same light, if the filter
+/// is narrower than a pixel, so that most splats miss all pixels: ∫f².
+pub fn sparsity(filter: &PixelFilter) -> f64 {
+    const STEPS: u16 = 256;
+    let value = |i| {
+        let (at, _) = filter.sample([(f32::from(i) + 0.5) / f32::from(STEPS), 0.5]);
+        f64::from(filter.eval_axis(at.x).abs())
+    };
+    let axis = (0..STEPS).map(value).sum::<f64>() / f64::from(STEPS);
+    (axis * axis).clamp(1.0, RAREST)
 }
 
 /// What an estimator practically never finds counts as this much rarer than all strategies together find it.
@@ -241,6 +274,16 @@ impl Probe<'_, '_> {
             }
         });
     }
+}
+
+/// How often eye paths and light paths find a path that was found, adding up to one.
+fn by_walk(c: &Contribution<'_>) -> [f64; WALKS] {
+    let all: f64 = c.weights.iter().map(|w| f64::from(*w)).sum();
+    let light = match c.weights.last() {
+        Some(weight) if all > 0.0 => f64::from(*weight) / all,
+        _ => f64::from(u8::from(c.strategy.t == 1)),
+    };
+    [1.0 - light, light]
 }
 
 impl Sink for Probe<'_, '_> {
@@ -273,17 +316,20 @@ impl Sink for Probe<'_, '_> {
         let reach = self.reach(&class);
         let share: f64 = self.parts.iter().map(|p| p.1).sum();
         self.learned.classes.entry(class).or_default().add(luminance * share);
-        let own = self.learned.by_reach.entry(reach).or_insert_with(|| Powers::new(grid.blocks()));
-        for &(block, part) in &self.parts {
-            own.add(block, luminance * part, 1.0);
+        // What a light path spreads over pixels, eye paths find whole in some of them.
+        let rarities = |part: f64| match c.strategy.t {
+            1 => [1.0 / part.abs().min(1.0), 1.0],
+            _ => [1.0, self.sparsity],
+        };
+        let by_both = self.learned.by_reach.entry(reach).or_insert_with(|| Powers::new(grid.blocks()));
+        let parts = || self.parts.iter().filter(|p| p.1 != 0.0);
+        for &(block, part) in parts() {
+            by_both.divide(block, luminance * part, by_walk(c), rarities(part));
         }
         for (i, estimator) in self.estimators.iter().enumerate().filter(|(i, _)| reach >> i & 1 != 0) {
-            let rarity = estimator.rarity(c.weights).min(RAREST);
-            // What a light path spreads over pixels, eye paths find whole in some of them.
-            let whole = c.strategy.t == 1 && !estimator.splats();
-            for &(block, part) in self.parts.iter().filter(|p| p.1 != 0.0) {
-                let rarity = if whole { rarity / part.abs().min(1.0) } else { rarity };
-                self.learned.expected[i].add(block, luminance * part, rarity);
+            let shares = estimator.shares(c.weights);
+            for &(block, part) in parts() {
+                self.learned.expected[i].divide(block, luminance * part, shares, rarities(part));
             }
         }
     }

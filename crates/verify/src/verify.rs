@@ -14,7 +14,7 @@ use crate::grid::Grid;
 use crate::jobs;
 use crate::memory;
 use crate::outcome::{ClassShare, Finding, Outcome, Tested};
-use crate::tally::{Learned, Picture, PictureSink, Powers, Probe};
+use crate::tally::{Learned, Picture, PictureSink, Powers, Probe, sparsity};
 use crate::trial::{Expected, Side, compare};
 
 /// How a scene is verified.
@@ -191,7 +191,9 @@ impl Run<'_> {
                 pixel: [0; 2],
             };
             let learned = Learned::new(&self.grid, estimators.len());
-            let mut probe = Probe { render, learned, estimators, camera: self.camera(), parts: Vec::new() };
+            let sparsity = sparsity(kernel.filter());
+            let (camera, parts) = (self.camera(), Vec::new());
+            let mut probe = Probe { render, learned, estimators, camera, sparsity, parts };
             for pass in 0..passes {
                 for pixel in self.grid.each_pixel() {
                     probe.render.pixel = pixel;
