@@ -145,6 +145,7 @@ fn directional_light() {
 #[test]
 fn mirrors_in_mirrors() {
     agrees("infinite_mirrors/scene_path.xml", "scene", 16, None);
+    agrees("infinite_mirrors/scene_path.xml", "scene", 128, Some(Integrator::Bdpt));
 }
 
 #[test]
