@@ -140,6 +140,7 @@ fn directional_light() {
     let scene = "floating_sphere/test_directional_direct.xml";
     agrees(scene, "test_directional", 32, None);
     agrees(scene, "test_directional", 32, Some(Integrator::Bdpt));
+    agrees(scene, "test_directional", 256, Some(Integrator::Light));
 }
 
 #[test]
