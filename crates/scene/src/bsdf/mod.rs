@@ -208,7 +208,7 @@ impl Bsdf {
     /// Whether any of it is Dirac.
     #[inline]
     pub fn has_dirac(&self) -> bool {
-        self.is_delta() || matches!(self, Self::Plastic(_))
+        self.is_delta() || self.is_partly_delta()
     }
 
     /// Whether [`Bsdf::sample`] asks for its third number.
