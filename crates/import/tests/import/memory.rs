@@ -1,0 +1,149 @@
+//! What does not fit into memory is refused before it is allocated, with the figures.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use caustica_import::{load_obj_within, load_within, read_image_within};
+use caustica_scene::{Cause, Diagnostic, MemoryLimit};
+use tempfile::TempDir;
+
+const MEGABYTE: u64 = 1_000_000;
+
+fn write(folder: &TempDir, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    path
+}
+
+#[track_caller]
+fn is_shortage(e: &Diagnostic, fragment: &str) {
+    assert!(e.cause == Cause::Memory && e.message.contains(fragment), "{e}");
+}
+
+fn png(width: u32, height: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header().unwrap().write_image_data(data).unwrap();
+    bytes
+}
+
+fn exr(width: usize, height: usize) -> Vec<u8> {
+    use exr::prelude::*;
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let channels = SpecificChannels::rgb(|_: Vec2<usize>| (0.5_f32, 0.5_f32, 0.5_f32));
+    Image::from_channels((width, height), channels).write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn images() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [
+        ("a.png", png(200, 100, &vec![7; 200 * 100 * 3])),
+        ("a.exr", exr(200, 100)),
+        ("a.jpg", include_bytes!("../data/two_colours.jpg").to_vec()),
+    ];
+    for (name, bytes) in files {
+        let path = write(&folder, name, bytes);
+        let pixels =
+            read_image_within(&path, MemoryLimit::Bytes(MEGABYTE)).unwrap().image.pixels.len() as u64;
+        // The colours themselves, twice, are the least that is needed.
+        let e = read_image_within(&path, MemoryLimit::Bytes(24 * pixels)).unwrap_err();
+        is_shortage(&e, &format!("{name}` needs 1 MB of memory, and 0 MB are there"));
+    }
+}
+
+/// Heads of files that promise 100 000 × 100 000 pixels are refused at once, however much memory there is.
+#[test]
+fn ten_thousand_million_pixels() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut large_png = png(1, 1, &[0; 3]);
+    let side = 100_000_u32.to_be_bytes();
+    large_png[16..20].copy_from_slice(&side);
+    large_png[20..24].copy_from_slice(&side);
+    let sum = crc(&large_png[12..29]).to_be_bytes();
+    large_png[29..33].copy_from_slice(&sum);
+    // Both windows of an OpenEXR file hold two corners of two numbers each.
+    let mut large_exr = exr(1, 1);
+    for name in [&b"dataWindow\0box2i\0"[..], b"displayWindow\0box2i\0"] {
+        let at = large_exr.windows(name.len()).position(|w| w == name).unwrap() + name.len() + 4;
+        large_exr[at + 8..at + 12].copy_from_slice(&99_999_u32.to_le_bytes());
+        large_exr[at + 12..at + 16].copy_from_slice(&99_999_u32.to_le_bytes());
+    }
+    for (name, bytes) in [("a.png", large_png), ("a.exr", large_exr)] {
+        let (path, start) = (write(&folder, name, bytes), Instant::now());
+        let e = read_image_within(&path, MemoryLimit::Bytes(u64::MAX)).unwrap_err();
+        assert!(e.message.contains("100000 × 100000 pixels are more than"), "{e}");
+        assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+    }
+}
+
+/// The checksum of PNG.
+fn crc(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { 0xEDB8_8320 ^ (c >> 1) } else { c >> 1 })
+    })
+}
+
+/// The text of a strip of `n` squares.
+fn strip(n: u32) -> String {
+    let corners = (0..=n).map(|i| format!("v {i} 0 0\nv {i} 1 0\n"));
+    let faces = (0..n).map(|i| 2 * i + 1).map(|a| format!("f {a} {} {} {}\n", a + 2, a + 3, a + 1));
+    corners.chain(faces).collect()
+}
+
+#[test]
+fn meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(&folder, "strip.obj", strip(100_000));
+    assert_eq!(
+        load_obj_within(&path, MemoryLimit::Bytes(100 * MEGABYTE)).unwrap().mesh.triangles.len(),
+        200_000
+    );
+    let e = load_obj_within(&path, MemoryLimit::Bytes(3 * MEGABYTE)).unwrap_err();
+    is_shortage(&e, "strip.obj` needs ");
+    assert!(e.message.ends_with(" and 3 MB are there") && e.hint.is_some(), "{e}");
+    // It is clear from the beginning.
+    let e = load_obj_within(&path, MemoryLimit::Bytes(MEGABYTE / 10)).unwrap_err();
+    assert_eq!(e.origin.map(|o| o.line), Some(1 << 14));
+}
+
+/// Scenes hand the limit on to what they name, and every copy of a mesh counts.
+#[test]
+fn scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    write(&folder, "strip.obj", strip(30_000));
+    write(&folder, "a.png", png(300, 200, &vec![7; 300 * 200 * 3]));
+    let scene = |inner: &str| {
+        let text = format!(
+            "<scene><camera type='perspective'/><integrator type='bdpt'/>\n{inner}\n\
+             <emitter type='point'><point name='position' value='0,0,0'/>\
+             <color name='power' value='1,1,1'/></emitter></scene>"
+        );
+        write(&folder, "scene.xml", text)
+    };
+    let mesh = "<mesh type='obj'><string name='filename' value='strip.obj'/></mesh>";
+    let texture = "<mesh type='sphere'><bsdf type='diffuse'><texture type='image_texture' name='albedo'>\
+        <string name='filename' value='a.png'/></texture></bsdf></mesh>";
+    for (inner, fragment) in [(mesh, "the mesh"), (texture, "the image")] {
+        let path = scene(inner);
+        load_within(&path, MemoryLimit::Bytes(100 * MEGABYTE)).unwrap();
+        let e = load_within(&path, MemoryLimit::Bytes(MEGABYTE / 2)).unwrap_err();
+        is_shortage(&e, fragment);
+        assert!(e.origin.is_some(), "{e}");
+    }
+}
+
+/// A few bytes ask for each mesh that stands for a stretched sphere.
+#[test]
+fn meshes_that_mitsuba_scenes_ask_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let ball = "<shape type='sphere'><boolean name='flip_normals' value='true'/></shape>";
+    let camera = "<sensor type='perspective'/>";
+    let text = format!("<scene version='3.0.0'>{camera}{}</scene>", ball.repeat(50));
+    let path = write(&folder, "balls.xml", text);
+    is_shortage(&load_within(&path, MemoryLimit::Bytes(20 * MEGABYTE)).unwrap_err(), "the scene's meshes");
+    assert!(load_within(&path, MemoryLimit::Bytes(500 * MEGABYTE)).is_ok());
+}
