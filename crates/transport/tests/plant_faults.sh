@@ -2,20 +2,14 @@
 # Plants one fault after the other in a copy of the workspace and runs the test that must turn red.
 #
 #   crates/transport/tests/plant_faults.sh [name...]
+#   crates/transport/tests/plant_faults.sh --stale
 #
-# Without names: all faults. Prints CAUGHT or MISSED for each, STALE where the line to be changed is no longer
+# The second only names the faults that are STALE, within a second. Without names: all faults. Prints CAUGHT or MISSED for each, STALE where the line to be changed is no longer
 # there, BROKEN where the changed source does not compile; exits 1 unless all are CAUGHT. The copy and its build
 # are kept in $FAULTS_DIR (default: /tmp/caustica-faults), so that a second run compiles little.
 set -u
 root=$(cd "$(dirname "$0")/../../.." && pwd)
 dir=${FAULTS_DIR:-/tmp/caustica-faults}
-rm -rf "$dir/tree"
-mkdir -p "$dir/tree"
-# Without their times: what an earlier run built with a fault in it must not pass for fresh.
-for part in Cargo.toml Cargo.lock crates scenes; do
-    [ -e "$root/$part" ] && cp -R "$root/$part" "$dir/tree/"
-done
-export CARGO_TARGET_DIR="$dir/target" RUST_BACKTRACE=0
 
 # name | crate | sed expression | test
 identity='-p caustica-transport --test path_identity'
@@ -25,7 +19,7 @@ faults=$(cat <<TABLE
 adjoint|transport|s/let ratio = if is_planted(Fault::Adjoint) { 1.0 }.*/let ratio = 1.0;/|$identity
 adjoint-sampled|transport|s/Walk::FromLight => s.value \* (cos.abs() \/ self.cos(self.prev)),/Walk::FromLight => s.value,/|$identity
 swapped-pdfs|transport|s/forward: e.to_light_pdf, reverse: e.to_camera_pdf }/forward: e.to_camera_pdf, reverse: e.to_light_pdf }/|$identity
-emission-for-next-event|transport|s/h.of(share \* lights.towards_pdf(from.point.position, &end.lamp).0 \/ end.forward)/h.of(share * pdf.point.0 \/ end.forward)/|$identity
+emission-for-next-event|transport|s/h.of(share \* lights.towards_pdf(from.receiver(), &end.lamp).0 \/ end.forward)/h.of(share * pdf.point.0 \/ end.forward)/|$identity
 paths-of-a-pass|transport|s/sums.total(from_camera \/ paths, /sums.total(from_camera, /|$identity
 crop-for-full|transport|s/light_paths: window.width as f32 \* window.height as f32,/light_paths: scene.film.width as f32 * scene.film.height as f32,/|$rows crop_window
 eta-squared|scene|s/Walk::FromCamera => share \* eta \* eta,/Walk::FromCamera => share,/|$identity
@@ -33,7 +27,7 @@ dirac-reverse|scene|s/reverse_pdf: SolidAnglePdf(share \* spread),/reverse_pdf: 
 lamp-cosine|transport|s/let to_lamp = edge.jacobian(found.point.cos(found.direction));/let to_lamp = edge.falloff;/|$strategies every_strategy_under_emission
 disk-density|scene|s/FRAC_1_PI \/ (self.radius \* self.radius))/FRAC_1_PI \/ self.radius)/|$rows irradiance
 delta-is-hittable|transport|s/let from_camera = if delta { 0.0 } else { scatter.forward.0 \* to_lamp };/let from_camera = scatter.forward.0 * to_lamp; let _ = delta;/|$strategies every_strategy_under_a_point_light
-lamp-choice|scene|s/emission.pdf.point = emission.pdf.point \* chosen.mass;//|$strategies every_strategy_under_both
+lamp-choice|scene|s/emission.pdf.point = emission.pdf.point \* mass;/let _ = mass;/|$strategies every_strategy_under_both
 lens-density|scene|s/SolidAnglePdf(1.0 \/ (pixel \* pixel \* cos \* cos \* cos))/SolidAnglePdf(1.0 \/ (pixel * pixel * cos * cos))/|$rows thin_lens
 roulette|transport|s/flight.throughput \*= 1.0 \/ survival;//|$rows roulette
 filter-ignored|testkit|s/let weight = filter.eval(x as f32 + 0.5 - film.x, y as f32 + 0.5 - film.y);/let weight = 1.0;/|$rows pixel_filters
@@ -51,6 +45,25 @@ TABLE
 )
 
 failed=0
+if [ "${1:-}" = --stale ]; then
+    while IFS='|' read -r name crate change _; do
+        sources() { find "$root/crates/$crate/src" -name '*.rs' -exec cat {} + 2>/dev/null; }
+        if cmp -s <(sources) <(sources | sed "$change"); then
+            echo "STALE: $name"
+            failed=1
+        fi
+    done <<<"$faults"
+    exit $failed
+fi
+
+rm -rf "$dir/tree"
+mkdir -p "$dir/tree"
+# Without their times: what an earlier run built with a fault in it must not pass for fresh.
+for part in Cargo.toml Cargo.lock crates scenes; do
+    [ -e "$root/$part" ] && cp -R "$root/$part" "$dir/tree/"
+done
+export CARGO_TARGET_DIR="$dir/target" RUST_BACKTRACE=0
+
 # What is red without a fault shows nothing.
 while read -r test; do
     if [ $# -eq 0 ] && ! (cd "$dir/tree" && cargo test -q $test) >"$dir/log" 2>&1 </dev/null; then

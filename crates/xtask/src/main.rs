@@ -4,6 +4,7 @@ mod command;
 mod fuzz;
 mod mutants;
 mod nightly;
+mod release;
 
 use std::process::ExitCode;
 
@@ -19,7 +20,7 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Run the long checks: fresh seeds, fuzzing, mutants, planted faults, dependencies
+    /// Run the long checks: fresh seeds, fuzzing, mutants, planted faults, dependencies, the release
     Nightly(nightly::Nightly),
 }
 

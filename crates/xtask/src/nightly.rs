@@ -6,7 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use clap::{Args, ValueEnum};
 
 use crate::command::{self, Outcome, Tool, Trouble, program};
-use crate::{fuzz, mutants};
+use crate::{fuzz, mutants, release};
 
 const CARGO_DENY: Tool = Tool {
     name: "cargo-deny",
@@ -27,6 +27,8 @@ pub enum Step {
     Faults,
     /// Licences, advisories and sources of dependencies
     Deny,
+    /// The released program, which must draw the same picture
+    Release,
 }
 
 /// Which of them, and how.
@@ -66,6 +68,7 @@ impl Nightly {
                 CARGO_DENY.check()?;
                 command::run(program(&["cargo", "deny", "check"]))
             }
+            Step::Release => release::release(),
         }
     }
 }
@@ -172,11 +175,11 @@ mod tests {
             fuzz_minutes: 1,
             mutants_shard: None,
         };
-        assert_eq!(options(&[], &[]).steps().len(), 5);
+        assert_eq!(options(&[], &[]).steps().len(), 6);
         assert_eq!(options(&[Step::Deny], &[]).steps(), [Step::Deny]);
         assert_eq!(
             options(&[], &[Step::Fuzz, Step::Mutants]).steps(),
-            [Step::Seeds, Step::Faults, Step::Deny]
+            [Step::Seeds, Step::Faults, Step::Deny, Step::Release]
         );
     }
 }
