@@ -1,7 +1,6 @@
 //! No input makes the readers panic, hang or lose the place of an error.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use caustica_import::{parse_nori, read_obj};
 use proptest::prelude::*;
@@ -103,9 +102,7 @@ proptest! {
 }
 
 fn in_time(what: &str, run: impl FnOnce()) {
-    let start = Instant::now();
-    run();
-    assert!(start.elapsed() < Duration::from_secs(20), "{what} took {:?}", start.elapsed());
+    crate::common::in_time(20.0, what, run);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What several of these tests need.
 
 use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use caustica_import::{Loaded, parse_nori};
 use caustica_scene::{Description, Diagnostic};
@@ -86,4 +87,26 @@ pub fn check_place(error: &Diagnostic, text: &str) {
     if let Some((start, length)) = origin.span {
         assert!(start + length <= text.len() + 1, "{error}");
     }
+}
+
+/// Seconds for which this thread has computed, in its own code and the system's: a busy machine does not count. By the
+/// clock where the system does not tell.
+fn seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap_or_default();
+    let mut fields = stat.rsplit(") ").next().unwrap_or_default().split(' ').skip(11);
+    let mut ticks = || fields.next()?.parse::<f64>().ok();
+    match (ticks(), ticks()) {
+        // Fields 14 and 15 of proc(5); a hundred ticks a second everywhere.
+        (Some(own), Some(system)) => (own + system) / 100.0,
+        _ => SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |t| t.as_secs_f64()),
+    }
+}
+
+/// Asserts that it takes no longer than so many seconds.
+pub fn in_time<T>(limit: f64, what: &str, run: impl FnOnce() -> T) -> T {
+    let start = seconds();
+    let result = run();
+    let taken = seconds() - start;
+    assert!(taken < limit, "{what} took {taken:.2} s");
+    result
 }
