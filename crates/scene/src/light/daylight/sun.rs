@@ -120,7 +120,7 @@ impl SunLight {
             Surface::Darkened(pieces(heaven.turbidity, scale * smaller))
         } else {
             let irradiance = irradiance(&pieces(heaven.turbidity, scale), heaven.elevation());
-            Surface::Even(irradiance * (1.0 / (2.0 * PI * disc.edge)))
+            Surface::Even(clipped(irradiance) * (1.0 / (2.0 * PI * disc.edge)))
         };
         let (to_sun, up) = (heaven.to_sun, heaven.axes[2]);
         let mut sun =
@@ -183,7 +183,7 @@ impl SunLight {
         match &self.surface {
             _ if z < 0.0 => Rgb::BLACK,
             Surface::Even(radiance) => *radiance,
-            Surface::Darkened(pieces) => radiance(pieces, asin(z), self.disc.cos_at_surface(h)),
+            Surface::Darkened(pieces) => clipped(radiance(pieces, asin(z), self.disc.cos_at_surface(h))),
         }
     }
 }
@@ -194,15 +194,21 @@ fn beginning(piece: usize) -> f32 {
     FRAC_PI_2 * part * part * part
 }
 
-/// The radiance of the disc at an elevation (rad), where the ray has that cosine with the sun's surface.
+/// The radiance of the disc at an elevation (rad), where the ray has that cosine with the sun's surface. A sun of deep red
+/// has a little less than no blue.
 fn radiance(pieces: &[Piece; PIECES], elevation: f32, cos: f32) -> Rgb {
     let index = (pow(elevation / FRAC_PI_2, 1.0 / 3.0) * PIECES as f32) as usize;
     let index = index.min(PIECES - 1);
     let x = elevation - beginning(index);
     Rgb(pieces[index].map(|powers| {
         let at = |c: [f32; 6]| c.into_iter().rev().fold(0.0, |sum, c| sum * cos + c);
-        powers.into_iter().rev().fold(0.0, |sum, c| sum * x + at(c)).max(0.0)
+        powers.into_iter().rev().fold(0.0, |sum, c| sum * x + at(c))
     }))
+}
+
+/// To what BT.709 can show.
+fn clipped(colour: Rgb) -> Rgb {
+    colour.map(|c| c.max(0.0))
 }
 
 /// What the figures say for a turbidity, in colours.
