@@ -79,7 +79,8 @@ pub struct SunLight {
 #[derive(Clone, Copy, Debug)]
 struct Disc {
     edge: f32,
-    /// The same, and the rounding of directions.
+    /// The same of the disc on which directions from inside of the edge may lie after rounding. This is the disc that is
+    /// seen, and that gives the irradiance.
     end: f32,
     /// The sine of the half angle.
     sin: f32,
@@ -116,11 +117,11 @@ impl SunLight {
     pub fn new(heaven: &Heaven, aperture: f32, scale: f32, darkened: bool) -> Self {
         let disc = Disc::new(aperture);
         let surface = if darkened {
-            let smaller = Disc::new(DIAMETER).edge / disc.edge;
+            let smaller = Disc::new(DIAMETER).edge / disc.end;
             Surface::Darkened(pieces(heaven.turbidity, scale * smaller))
         } else {
             let irradiance = irradiance(&pieces(heaven.turbidity, scale), heaven.elevation());
-            Surface::Even(clipped(irradiance) * (1.0 / (2.0 * PI * disc.edge)))
+            Surface::Even(clipped(irradiance) * (1.0 / (2.0 * PI * disc.end)))
         };
         let (to_sun, up) = (heaven.to_sun, heaven.axes[2]);
         let mut sun =
@@ -148,7 +149,7 @@ impl SunLight {
             sum += f64::from(radiance.luminance());
             self.brightest = self.brightest.max(1.1 * radiance.max_channel());
         }
-        self.flux = sum / f64::from(n * n) * 2.0 * std::f64::consts::PI * f64::from(self.disc.edge);
+        self.flux = sum / f64::from(n * n) * 2.0 * std::f64::consts::PI * f64::from(self.disc.end);
     }
 
     /// 1 − cos between a direction and the sun's middle, without the cancellation of that difference.
@@ -157,10 +158,10 @@ impl SunLight {
         0.5 * (towards - self.to_sun).length_squared()
     }
 
-    /// A uniform direction of the disc, and its density.
+    /// A direction of the disc, uniform but for rounding, and its density.
     pub fn sample_direction(&self, u: [f32; 2]) -> (Vec3, SolidAnglePdf) {
         let towards = self.frame.to_world(warp::uniform_cone(u, self.disc.edge));
-        (towards, warp::uniform_cone_pdf(self.disc.edge))
+        (towards, warp::uniform_cone_pdf(self.disc.end))
     }
 
     /// The density of a direction.
@@ -169,7 +170,7 @@ impl SunLight {
         if self.one_minus_cos(towards) > self.disc.end {
             return SolidAnglePdf::ZERO;
         }
-        warp::uniform_cone_pdf(self.disc.edge)
+        warp::uniform_cone_pdf(self.disc.end)
     }
 
     /// The radiance that arrives from a direction.
