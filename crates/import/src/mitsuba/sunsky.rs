@@ -32,10 +32,7 @@ pub(super) fn read(mut fields: Fields, cx: &mut Context) -> Result<(), Diagnosti
     let sky_scale = fields.float("sky_scale", 1.0, Bounds::NotNegative)?;
     let aperture = aperture(&mut fields)?;
     let darkened = fields.boolean("complex_sun", false)?;
-    let Some(up) = to_world.vector(Vec3::Z).try_normalized() else {
-        return Err(fields.error("`to_world` of the emitter `sunsky` cannot be inverted"));
-    };
-    let is_day = to_sun.dot(up) >= 0.0;
+    let is_day = to_sun.dot(to_world.vector(Vec3::Z)) >= 0.0;
     if !is_day {
         fields.warn("the sun is below the horizon: the emitter `sunsky` gives no light");
     } else if sun_scale == 0.0 && sky_scale == 0.0 {
