@@ -437,9 +437,9 @@ fn lamps_at_infinity() {
     sun(&mut d);
     environment(&mut d);
     verify("glass egg in the sun", d);
-    let disc = |d: &mut Description| caustica_testkit::scenes::sun(d, [0.3, 1.0, -0.5], 40.0);
+    let disc = |d: &mut Description| caustica_testkit::scenes::sun(d, [0.15, 0.3, 1.0], 60.0);
     verify("a sun's disc", lit(&[disc]));
-    let clear = |d: &mut Description| dome(d, [0.3, 1.0, -0.5]);
+    let clear = |d: &mut Description| dome(d, [0.15, 0.3, 1.0]);
     verify("a clear sky", lit(&[clear]));
     let mut d = egg(stage(), dielectric(1.5));
     disc(&mut d);
