@@ -56,7 +56,7 @@ impl Scene {
                 (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
             }
             LightKind::Constant { radiance } => {
-                self.from_everywhere(EnvironmentLight::Constant(colour(radiance, w)?), w)
+                self.environment_lamp(EnvironmentLight::Constant(colour(radiance, w)?), w)
             }
             LightKind::Environment { image, to_world, scale, rows } => {
                 return self.environment(image, &to_world, (scale, rows), w);
@@ -90,10 +90,10 @@ impl Scene {
         let Some(map) = EnvironmentMap::new(image.0, pixels, (scale, rows), [x, y, z]) else {
             return Ok(None);
         };
-        Ok(Some(self.from_everywhere(EnvironmentLight::Map(Box::new(map)), w)))
+        Ok(Some(self.environment_lamp(EnvironmentLight::Map(Box::new(map)), w)))
     }
 
-    fn from_everywhere(&self, light: EnvironmentLight, w: Wavelengths) -> (Light, f64) {
+    fn environment_lamp(&self, light: EnvironmentLight, w: Wavelengths) -> (Light, f64) {
         let power = power_through_disk(light.flux(&self.surroundings(w)), self.radius);
         (Light::Environment(light), power)
     }
@@ -107,7 +107,7 @@ impl Scene {
             return Ok(None);
         }
         let sky = SkyLight::new(heaven, albedo, scale);
-        Ok(sky.map(|sky| self.from_everywhere(EnvironmentLight::Sky(Box::new(sky)), w)))
+        Ok(sky.map(|sky| self.environment_lamp(EnvironmentLight::Sky(Box::new(sky)), w)))
     }
 
     fn sun(
@@ -124,7 +124,7 @@ impl Scene {
             return Ok(None);
         }
         let sun = SunLight::new(&heaven, aperture, scale, darkened);
-        Ok(Some(self.from_everywhere(EnvironmentLight::Sun(Box::new(sun)), w)))
+        Ok(Some(self.environment_lamp(EnvironmentLight::Sun(Box::new(sun)), w)))
     }
 
     fn projector(

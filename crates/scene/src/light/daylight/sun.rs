@@ -248,8 +248,8 @@ fn over_disc(pieces: &[Piece; PIECES], elevation: f32) -> Rgb {
     // With the cosine μ at the sun's surface, a ring is proportional to 2μ dμ, and the radiance a polynomial in μ: exact
     // by four of Gauss's points.
     const POINTS: [(f32, f32); 4] = [
-        (0.069_431_845, 0.173_927_42),
-        (0.330_009_48, 0.326_072_58),
+        (0.069_431_84, 0.173_927_42),
+        (0.330_009_5, 0.326_072_58),
         (0.669_990_54, 0.326_072_58),
         (0.930_568_16, 0.173_927_42),
     ];
