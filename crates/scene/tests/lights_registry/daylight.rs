@@ -77,7 +77,8 @@ fn under_a_sun(name: &'static str, kind: LightKind, aperture: f64) -> Example {
 fn over_disc(example: &Example, middle: Vec3, degrees: f64, f: impl Fn(Vec3) -> f64) -> f64 {
     let frame = Frame::from_normal(middle);
     let (n, query) = (400, example.query());
-    let h = 2.0 * libm::sin(degrees.to_radians() / 4.0).powi(2);
+    // It is as much wider as directions are rounded.
+    let h = 2.0 * (libm::sin(degrees.to_radians() / 4.0) + 1.25e-7).powi(2);
     let mut sum = 0.0;
     for i in 0..n * n {
         let [u, v] = [i % n, i / n].map(|k| (f64::from(k) + 0.5) / f64::from(n));
