@@ -179,5 +179,7 @@ fn light_name(kind: &LightKind) -> &'static str {
         LightKind::Directional { .. } => "directional",
         LightKind::Constant { .. } => "constant environment",
         LightKind::Environment { .. } => "environment map",
+        LightKind::Sky { .. } => "sky",
+        LightKind::Sun { .. } => "sun",
     }
 }

@@ -7,7 +7,7 @@ use crate::description::{
     CameraKind, Description, Geometry, ImageId, LightKind, MaterialKind, Shape, Texture,
 };
 use crate::diagnostic::{Cause, Diagnostic};
-use crate::light::Light;
+use crate::light::{Light, SkyLight, SunLight};
 
 /// Bytes a primitive that the tree takes when it is done, and while it is built.
 const TREE: u64 = 62;
@@ -72,6 +72,8 @@ fn tables_of(light: &LightKind, d: &Description) -> u64 {
         |i: &ImageId| d.images.get(i.0 as usize).map_or(0, |i| i.pixels.len() as u64 * ENVIRONMENT_PIXEL);
     match light {
         LightKind::Environment { image, .. } => of_image(image),
+        LightKind::Sky { .. } => SkyLight::CELLS as u64 * ENVIRONMENT_PIXEL,
+        LightKind::Sun { .. } => size_of::<SunLight>() as u64 + SunLight::TABLE,
         LightKind::Projector { irradiance: Texture::Image { image, .. }, .. } => of_image(image),
         // A checkerboard of 64 × 64 cells.
         LightKind::Projector { .. } => (1 << 12) * ENVIRONMENT_PIXEL,

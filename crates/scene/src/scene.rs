@@ -118,8 +118,8 @@ impl Scene {
             radius,
             brightest: 0.0,
         };
-        scene.brightest = scene.brightest_of(&description);
         scene.lights = scene.flatten_lights(&description, &mut warnings)?;
+        scene.brightest = scene.brightest_of(&description);
         crate::warnings::check(&scene, &description, &mut warnings);
         Ok((scene, warnings))
     }
@@ -343,7 +343,11 @@ impl Scene {
             LightKind::Environment { image, scale, .. } => of_image(image) * scale,
             _ => 0.0,
         });
-        surfaces.chain(environments).fold(0.0, f32::max)
+        let daylight = self.lights.iter().map(|l| match l {
+            Light::Environment(l) => l.brightest(),
+            _ => 0.0,
+        });
+        surfaces.chain(environments).chain(daylight).fold(0.0, f32::max)
     }
 
     /// Centre and radius of a sphere around all surfaces.

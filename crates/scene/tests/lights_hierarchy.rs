@@ -5,7 +5,7 @@
 
 use caustica_math::stats::{chi_square_test, sidak};
 use caustica_math::{Rgb, SampleStream, StreamId, Transform, Vec3, Wavelengths, warp};
-use caustica_scene::description::{Geometry, LightKind};
+use caustica_scene::description::{Daylight, Geometry, LightKind};
 use caustica_scene::light::{Anchor, Leaf, Light, LightPoint, Receiver};
 use caustica_scene::{Description, Scene};
 use caustica_testkit::build;
@@ -61,6 +61,8 @@ fn all_kinds(infinite: bool) -> Description {
             &mut d,
             LightKind::Directional { direction: [0.0, 1.0, 0.1], irradiance: Rgb::splat(0.5) },
         );
+        let daylight = Daylight { to_world: Transform::IDENTITY, to_sun: [0.3, 0.2, 0.4], turbidity: 2.0 };
+        build::light(&mut d, LightKind::Sun { daylight, aperture: 3.0, scale: 0.3, darkened: true });
     }
     d
 }

@@ -8,7 +8,7 @@ mod things;
 
 use caustica_math::{Filter, Rgb, Transform, stream::mix64};
 use caustica_scene::Description;
-use caustica_scene::description::{Camera, CameraKind, Crop, FilmSettings, Image, LightKind};
+use caustica_scene::description::{Camera, CameraKind, Crop, Daylight, FilmSettings, Image, LightKind};
 
 use crate::build::light;
 pub use choices::Choices;
@@ -112,7 +112,7 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
     let colour = choices.light();
     // Light spreads over the square of the scene's size.
     let spread = colour * (scale * scale);
-    let kind = match choices.below(5) {
+    let kind = match choices.below(7) {
         0 => LightKind::Point { position, intensity: spread },
         1 => {
             let narrowest = if choices.is_wild() { 1e-3 } else { 0.5 };
@@ -122,6 +122,17 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
         }
         2 => LightKind::Directional { direction, irradiance: colour },
         3 => LightKind::Constant { radiance: colour },
+        4 => LightKind::Sky {
+            daylight: daylight(choices),
+            albedo: choices.albedo().map(|c| c.min(1.0)),
+            scale: 4.0 * choices.unit(),
+        },
+        5 => {
+            let narrowest = if choices.is_wild() { 0.01 } else { 0.5 };
+            let aperture = narrowest + 170.0 * choices.unit() * choices.unit();
+            let (scale, darkened) = (4.0 * choices.unit(), choices.once_in(2));
+            LightKind::Sun { daylight: daylight(choices), aperture, scale, darkened }
+        }
         _ => LightKind::Environment {
             image: caustica_scene::description::ImageId(choices.below(2) as u32),
             to_world: Transform::rotate(f64::from(choices.signed()) * 180.0, [0.0, 1.0, 0.3]),
@@ -130,4 +141,12 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
         },
     };
     light(d, kind);
+}
+
+/// By day.
+fn daylight(choices: &mut Choices) -> Daylight {
+    let to_world = Transform::rotate(f64::from(choices.signed()) * 180.0, [1.0, 0.2, 0.3]);
+    let [x, y, z] = choices.direction();
+    let to_sun = to_world.vector(caustica_math::Vec3::new(x, y, z.abs() + 0.01)).to_array();
+    Daylight { to_world, to_sun, turbidity: 1.0 + 9.0 * choices.unit() }
 }

@@ -3,7 +3,8 @@
 use caustica_math::{Rgb, Transform};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    CameraKind, Geometry, Image, LightKind, MaterialId, MaterialKind, Roughness, Texture, TextureTransform,
+    CameraKind, Daylight, Geometry, Image, LightKind, MaterialId, MaterialKind, Roughness, Texture,
+    TextureTransform,
 };
 
 use crate::build::{
@@ -161,6 +162,22 @@ pub fn sky(d: &mut Description) {
     let image = d.add_image(Image { width: 16, height: 8, pixels: pixels.into() });
     let to_world = Transform::rotate(40.0, [0.0, 1.0, 0.2]);
     light(d, LightKind::Environment { image, to_world, scale: 0.5, rows: Default::default() });
+}
+
+/// Daylight in a scene whose +y is up.
+pub fn daylight(to_sun: [f32; 3]) -> Daylight {
+    Daylight { to_world: Transform::rotate(-90.0, [1.0, 0.0, 0.0]), to_sun, turbidity: 4.0 }
+}
+
+/// A clear sky, whose radiance is about 1.
+pub fn dome(d: &mut Description, to_sun: [f32; 3]) {
+    let albedo = Rgb::new(0.2, 0.3, 0.5);
+    light(d, LightKind::Sky { daylight: daylight(to_sun), albedo, scale: 8.0 });
+}
+
+/// A sun of some diameter in degrees, darkened, whose irradiance is about 1.
+pub fn sun(d: &mut Description, to_sun: [f32; 3], aperture: f32) {
+    light(d, LightKind::Sun { daylight: daylight(to_sun), aperture, scale: 1.0, darkened: true });
 }
 
 /// A ball on a floor under a sky.

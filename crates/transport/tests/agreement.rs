@@ -133,6 +133,24 @@ fn environment_light() {
 }
 
 #[test]
+fn daylight() {
+    let by_day = |aperture, kind| {
+        let mut d = under_the_sky(kind);
+        d.lights.clear();
+        dome(&mut d, [0.4, 0.5, -0.6]);
+        sun(&mut d, [0.4, 0.5, -0.6], aperture);
+        d
+    };
+    check("wide sun", by_day(30.0, plastic_kind()), 600, &[Bdpt, Naive, Path, Emitters, Light, ODD]);
+    check("sun", by_day(0.5358, plastic_kind()), 400, &[Bdpt, Path, Emitters, Light, ODD]);
+    check("wide sun, glass", by_day(30.0, glass_kind(false)), 600, &[Bdpt, Naive, Path]);
+    // Cut by the horizon, in a room with a lamp.
+    let mut both = open_box();
+    sun(&mut both, [0.2, 0.05, -1.0], 30.0);
+    check("lamp and sun", both, 400, &[Bdpt, Naive, Path, Light]);
+}
+
+#[test]
 fn instances() {
     check("instances", instanced(), 1500, &[Bdpt, Naive, Path]);
     // Not stretched, as normals between corners are mixed before they are stretched in an instance, and after it in

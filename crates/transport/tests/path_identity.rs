@@ -16,7 +16,7 @@ use caustica_testkit::agreement::flatten;
 use caustica_testkit::build::{add, ellipsoid, emit, glass, light, look, point_light, quad, scene, sphere};
 use caustica_testkit::materials::*;
 use caustica_testkit::oracle::{judge, lanes};
-use caustica_testkit::scenes::inside_out;
+use caustica_testkit::scenes::{dome, inside_out};
 use caustica_testkit::seed::seed;
 use caustica_transport::{Contribution, Heuristic, Kernel, Scratch, Settings, Sink, Strategy};
 
@@ -437,6 +437,15 @@ fn lamps_at_infinity() {
     sun(&mut d);
     environment(&mut d);
     verify("glass egg in the sun", d);
+    let disc = |d: &mut Description| caustica_testkit::scenes::sun(d, [0.15, 0.3, 1.0], 60.0);
+    verify("a sun's disc", lit(&[disc]));
+    let clear = |d: &mut Description| dome(d, [0.15, 0.3, 1.0]);
+    verify("a clear sky", lit(&[clear]));
+    let mut d = egg(stage(), dielectric(1.5));
+    disc(&mut d);
+    clear(&mut d);
+    lamp(&mut d);
+    verify("a glass egg in daylight", d);
 }
 
 #[test]

@@ -13,12 +13,12 @@ use caustica_scene::description::{EnvironmentRows, Light, LightKind, Texture};
 use super::context::Context;
 use super::fields::Fields;
 use super::spectrum::Role;
-use super::{sensor, texture};
+use super::{sensor, sunsky, texture};
 use crate::nori::range::Bounds;
 
 const LIGHTS: &[&str] =
-    &["point", "spot", "projector", "directional", "constant", "envmap", "area", "directionalarea"];
-const UNSUPPORTED: &[&str] = &["sunsky", "sky", "sun", "timed_sunsky", "volumelight", "collimated"];
+    &["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area", "directionalarea"];
+const UNSUPPORTED: &[&str] = &["sky", "sun", "timed_sunsky", "volumelight", "collimated"];
 
 /// The emitter of the shape that is to be added next: its radiance; or nothing, if it is a lamp of its own or its kind is
 /// not supported.
@@ -76,6 +76,7 @@ pub(super) fn read_light(index: usize, cx: &mut Context) -> Result<(), Diagnosti
             fields.ignore(&["mis_compensation", "cache"]);
             LightKind::Environment { image, to_world, scale, rows: EnvironmentRows::OnPoles }
         }
+        "sunsky" => return sunsky::read(fields, cx),
         plugin @ ("area" | "directionalarea") => {
             let error = fields.error(format!("the emitter `{plugin}` cannot stand alone"));
             return Err(error.hint("put it into the shape that is to emit light"));

@@ -25,6 +25,7 @@ mod sensor;
 mod shape;
 mod solids;
 mod spectrum;
+mod sunsky;
 mod texture;
 mod transform;
 mod tree;

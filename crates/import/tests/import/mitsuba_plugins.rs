@@ -260,7 +260,7 @@ fn what_is_not_supported_is_told() {
     told("<bsdf type='§bumpmap'><texture type='checkerboard'/><bsdf type='diffuse'/></bsdf>", "it is flat");
     told("<bsdf type='§coating'><bsdf type='diffuse'/></bsdf>", "inside of it");
     told("<bsdf type='conductor'><string name='material' value='§AlSb'/></bsdf>", "no data of `AlSb`");
-    warned(&scene("<emitter type='§sunsky'/>"), "left out");
+    warned(&scene("<emitter type='§timed_sunsky'/>"), "left out");
     warned(&scene("<shape type='§sdfgrid'/>"), "left out");
     warned(&scene("§<medium type='homogeneous'/>"), "participating media");
     warned(

@@ -98,6 +98,41 @@ pub enum LightKind {
         /// Where its rows lie.
         rows: EnvironmentRows,
     },
+    /// A clear sky, without its sun, by the model of Hosek and Wilkie (2012). Below the horizon it is black.
+    Sky {
+        /// Where the sun is, and how hazy it is.
+        daylight: Daylight,
+        /// Of the ground, at most 1: it lights the sky.
+        albedo: Rgb,
+        /// A factor on its radiance.
+        scale: f32,
+    },
+    /// The sun's disc, by the model of Hosek and Wilkie (2013). What of it is below the horizon is black.
+    Sun {
+        /// Where it is, and how hazy it is.
+        daylight: Daylight,
+        /// Its diameter in degrees, from 0.01 and less than 180. The irradiance does not depend on it, but where the
+        /// horizon cuts it.
+        aperture: f32,
+        /// A factor on its radiance.
+        scale: f32,
+        /// Whether it is darker towards its edge and the horizon, as the model tells. Otherwise it is the same
+        /// everywhere, with the irradiance that the model tells for every third degree of elevation from 2° on, and
+        /// straight lines between: near the horizon that is far too much, but what Mitsuba renders.
+        darkened: bool,
+    },
+}
+
+/// The place of the sun and the state of the air. Radiance is that of the models in W·m⁻²·sr⁻¹·nm⁻¹, in colours: a
+/// spectrum of one has luminance one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Daylight {
+    /// The sky's frame, whose +z is up, to the world; only its rotation counts.
+    pub to_world: Transform,
+    /// The direction to the middle of the sun, in the world; of any length but zero. Below the horizon there is no light.
+    pub to_sun: [f32; 3],
+    /// How hazy it is: from 1 (as clear as can be) to 10.
+    pub turbidity: f32,
 }
 
 /// Where the rows of pixels of an environment map lie, from the pole +y (0) to the pole −y (1).

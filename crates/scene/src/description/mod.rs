@@ -29,7 +29,7 @@ pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
 pub use instance::{Group, GroupId, Instance};
 pub use integrator::{Integrator, Technique};
-pub use light::{EnvironmentRows, Light, LightKind};
+pub use light::{Daylight, EnvironmentRows, Light, LightKind};
 pub use material::{
     Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,
 };

@@ -3,17 +3,21 @@ use std::f32::consts::{FRAC_1_PI, PI, TAU};
 use caustica_math::elementary::{atan2, sin, sin_cos, sin_cos_turns};
 use caustica_math::{Distribution2d, Rgb, SolidAnglePdf, Spectrum, Vec3, warp};
 
-use super::Surroundings;
+use super::{SkyLight, SunLight, Surroundings};
 use crate::description::{EnvironmentRows, Image, Wrap};
 use crate::texture::bilinear;
 
-/// Light from everywhere: constant, or an equirectangular map.
+/// Light from infinitely far away, from more than one direction.
 #[derive(Debug)]
 pub enum EnvironmentLight {
     /// The same radiance from all directions.
     Constant(Spectrum),
     /// A map.
     Map(Box<EnvironmentMap>),
+    /// A clear sky.
+    Sky(Box<SkyLight>),
+    /// The sun's disc.
+    Sun(Box<SunLight>),
 }
 
 /// An equirectangular map with its sampling table.
@@ -136,6 +140,26 @@ impl EnvironmentLight {
                 f64::from(around.wavelengths.luminance(*radiance)) * 2.0 * f64::from(TAU)
             }
             Self::Map(map) => map.flux,
+            Self::Sky(sky) => sky.flux(),
+            Self::Sun(sun) => sun.flux(),
+        }
+    }
+
+    /// What part of its flux falls on a surface that faces it best, or about so much.
+    pub(super) fn part_on_surface(&self) -> f64 {
+        match self {
+            // Of what comes from everywhere, a surface gets a quarter: half of it, and that by the cosine.
+            Self::Constant(_) | Self::Map(_) | Self::Sky(_) => 0.25,
+            Self::Sun(_) => 1.0,
+        }
+    }
+
+    /// A bound of its radiance, where no image tells.
+    pub(crate) fn brightest(&self) -> f32 {
+        match self {
+            Self::Constant(_) | Self::Map(_) => 0.0,
+            Self::Sky(sky) => sky.brightest(),
+            Self::Sun(sun) => sun.brightest(),
         }
     }
 
@@ -151,6 +175,8 @@ impl EnvironmentLight {
                 let pdf = self.direction_pdf(towards);
                 (pdf.0 > 0.0).then_some((towards, pdf))
             }
+            Self::Sky(sky) => sky.sample_direction(u),
+            Self::Sun(sun) => Some(sun.sample_direction(u)),
         }
     }
 
@@ -164,6 +190,8 @@ impl EnvironmentLight {
                 let sin_theta = sin_theta(local).max(1e-6);
                 SolidAnglePdf(map.table.pdf(direction_to_square(local)) / (TAU * PI * sin_theta))
             }
+            Self::Sky(sky) => sky.direction_pdf(towards),
+            Self::Sun(sun) => sun.direction_pdf(towards),
         }
     }
 
@@ -178,6 +206,8 @@ impl EnvironmentLight {
                 let rgb: Rgb = bilinear(image, x, row, [Wrap::Repeat, Wrap::Clamp]) * map.scale;
                 around.wavelengths.spectrum(rgb)
             }
+            Self::Sky(sky) => around.wavelengths.spectrum(sky.radiance_from(towards)),
+            Self::Sun(sun) => around.wavelengths.spectrum(sun.radiance_from(towards)),
         }
     }
 }

@@ -229,10 +229,9 @@ impl Beside {
         let across = std::f64::consts::PI * f64::from(around.radius) * f64::from(around.radius);
         let (mut infinite, mut irradiances) = (Vec::new(), Vec::new());
         for (index, (light, power)) in lights.iter().zip(powers).enumerate() {
-            // Of what comes from everywhere, a surface gets a quarter: half of it, and that by the cosine.
             let part = match light {
                 Light::Directional(_) => 1.0,
-                Light::Environment(_) => 0.25,
+                Light::Environment(l) => l.part_on_surface(),
                 _ => continue,
             };
             infinite.push(index as u32);

@@ -5,6 +5,7 @@
 //! Both include the probability of choosing the lamp.
 
 mod area;
+mod daylight;
 mod delta;
 mod environment;
 mod lights;
@@ -21,6 +22,7 @@ use crate::surface::{SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 
 pub use area::AreaLight;
+pub use daylight::{Heaven, LEAST_APERTURE, SkyLight, SunLight};
 pub use delta::{DirectionalLight, Falloff, SpotLight};
 pub use environment::{EnvironmentLight, EnvironmentMap};
 pub use lights::{FEWEST_PARTS, Lights};
@@ -208,7 +210,7 @@ pub enum Light {
     Collimated(AreaLight),
     /// Parallel light.
     Directional(DirectionalLight),
-    /// Light from everywhere.
+    /// Light from infinitely far away that a path can meet: from everywhere, or from a disc.
     Environment(EnvironmentLight),
 }
 

@@ -4,10 +4,10 @@ use caustica_math::{Frame, Rgb, Transform, Vec3, Wavelengths};
 
 use super::Scene;
 use crate::camera::shears;
-use crate::description::{EnvironmentRows, ImageId, LightKind, Texture};
+use crate::description::{Daylight, EnvironmentRows, ImageId, LightKind, Texture};
 use crate::light::{
-    AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Falloff, Light, ProjectorLight, SpotLight,
-    power_through_disk,
+    AreaLight, DirectionalLight, EnvironmentLight, EnvironmentMap, Falloff, Heaven, LEAST_APERTURE, Light,
+    ProjectorLight, SkyLight, SpotLight, SunLight, power_through_disk,
 };
 use crate::surface::is_reachable;
 
@@ -56,12 +56,14 @@ impl Scene {
                 (Light::Directional(DirectionalLight { direction: unit(direction)?, irradiance }), power)
             }
             LightKind::Constant { radiance } => {
-                let light = EnvironmentLight::Constant(colour(radiance, w)?);
-                let power = power_through_disk(light.flux(&around), self.radius);
-                (Light::Environment(light), power)
+                self.environment_lamp(EnvironmentLight::Constant(colour(radiance, w)?), w)
             }
             LightKind::Environment { image, to_world, scale, rows } => {
                 return self.environment(image, &to_world, (scale, rows), w);
+            }
+            LightKind::Sky { daylight, albedo, scale } => return self.sky(&daylight, albedo, scale, w),
+            LightKind::Sun { daylight, aperture, scale, darkened } => {
+                return self.sun(&daylight, (aperture, scale, darkened), w);
             }
         };
         Ok(Some(lamp))
@@ -88,9 +90,41 @@ impl Scene {
         let Some(map) = EnvironmentMap::new(image.0, pixels, (scale, rows), [x, y, z]) else {
             return Ok(None);
         };
-        let light = EnvironmentLight::Map(Box::new(map));
+        Ok(Some(self.environment_lamp(EnvironmentLight::Map(Box::new(map)), w)))
+    }
+
+    fn environment_lamp(&self, light: EnvironmentLight, w: Wavelengths) -> (Light, f64) {
         let power = power_through_disk(light.flux(&self.surroundings(w)), self.radius);
-        Ok(Some((Light::Environment(light), power)))
+        (Light::Environment(light), power)
+    }
+
+    fn sky(&self, daylight: &Daylight, albedo: Rgb, scale: f32, w: Wavelengths) -> Made {
+        let heaven = heaven(daylight, scale)?;
+        if !(albedo.is_valid() && albedo.max_channel() <= 1.0) {
+            return Err("the albedo of the ground must be from 0 to 1");
+        }
+        if !heaven.is_day() {
+            return Ok(None);
+        }
+        let sky = SkyLight::new(heaven, albedo, scale);
+        Ok(sky.map(|sky| self.environment_lamp(EnvironmentLight::Sky(Box::new(sky)), w)))
+    }
+
+    fn sun(
+        &self,
+        daylight: &Daylight,
+        (aperture, scale, darkened): (f32, f32, bool),
+        w: Wavelengths,
+    ) -> Made {
+        let heaven = heaven(daylight, scale)?;
+        if !(LEAST_APERTURE..180.0).contains(&aperture) {
+            return Err("the sun's aperture must be from 0.01 degrees on and less than 180");
+        }
+        if !heaven.is_day() {
+            return Ok(None);
+        }
+        let sun = SunLight::new(&heaven, aperture, scale, darkened);
+        Ok(Some(self.environment_lamp(EnvironmentLight::Sun(Box::new(sun)), w)))
     }
 
     fn projector(
@@ -128,6 +162,13 @@ impl Scene {
         // By its normals goes 1/π of what goes everywhere.
         Ok(lamp.map(|(lamp, power)| (Light::Collimated(lamp), power / std::f64::consts::PI)))
     }
+}
+
+fn heaven(daylight: &Daylight, scale: f32) -> Result<Heaven, &'static str> {
+    if !(scale >= 0.0 && scale.is_finite()) {
+        return Err("a factor on daylight must be finite and not negative");
+    }
+    Heaven::new(axes(&daylight.to_world)?, daylight)
 }
 
 fn unit(direction: [f32; 3]) -> Result<Vec3, &'static str> {

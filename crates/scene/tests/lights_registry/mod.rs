@@ -3,6 +3,7 @@
 // Each test binary uses its own part of this.
 #![allow(dead_code)]
 
+mod daylight;
 mod polygons;
 mod thrown;
 
@@ -43,7 +44,7 @@ pub fn luminance() -> f64 {
 }
 
 /// How many kinds [`kind_of`] tells apart.
-pub const KINDS: usize = 9;
+pub const KINDS: usize = 11;
 
 /// A number for each kind of lamp. A kind that is missing here does not compile; one that is missing from
 /// [`examples`] fails the test that asks for all numbers.
@@ -58,6 +59,8 @@ pub fn kind_of(example: &Example) -> usize {
         Light::Environment(EnvironmentLight::Map(_)) => 6,
         Light::Projector(_) => 7,
         Light::Collimated(_) => 8,
+        Light::Environment(EnvironmentLight::Sky(_)) => 9,
+        Light::Environment(EnvironmentLight::Sun(_)) => 10,
     }
 }
 
@@ -104,6 +107,7 @@ pub fn examples() -> Vec<Example> {
     all.extend(points());
     all.extend(thrown::examples());
     all.extend(infinite());
+    all.extend(daylight::examples());
     all
 }
 

@@ -2,7 +2,7 @@
 
 use caustica_math::{Rgb, Vec3};
 use caustica_scene::bvh::TreeQuality;
-use caustica_scene::description::{Geometry, Image, LightKind, Mesh};
+use caustica_scene::description::{Daylight, Geometry, Image, LightKind, Mesh};
 use caustica_scene::memory::needed;
 use caustica_scene::{Cause, Description, MemoryLimit, Scene};
 use caustica_testkit::build;
@@ -76,5 +76,10 @@ fn glass_lamps_and_environments_need_more() {
             rows: Default::default(),
         };
         (0..10).for_each(|_| build::light(d, kind));
+    }));
+    assert!(more(|d| {
+        let daylight = Daylight { to_world: Default::default(), to_sun: [0.0, 0.0, 1.0], turbidity: 3.0 };
+        let sky = LightKind::Sky { daylight, albedo: Rgb::WHITE, scale: 1.0 };
+        (0..1000).for_each(|_| build::light(d, sky));
     }));
 }

@@ -3,7 +3,7 @@
 use caustica_scene::Scene;
 use caustica_scene::bsdf::Bsdf;
 use caustica_scene::description::{Integrator, Technique};
-use caustica_scene::light::Light;
+use caustica_scene::light::{EnvironmentLight, Light};
 
 use super::missing::Missing;
 use super::survey::Survey;
@@ -25,6 +25,8 @@ pub fn lamp_words(scene: &Scene, names: &[String], lamp: u32) -> String {
         }
         Light::Collimated(_) => "a lamp that shines along its normals".to_owned(),
         Light::Directional(_) => "the directional light".to_owned(),
+        Light::Environment(EnvironmentLight::Sky(_)) => "the sky".to_owned(),
+        Light::Environment(EnvironmentLight::Sun(_)) => "the sun".to_owned(),
         Light::Environment(_) => "the environment".to_owned(),
     }
 }
