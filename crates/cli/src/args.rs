@@ -2,11 +2,11 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use caustica::Settings;
-use caustica::description::{Crop, Integrator};
+use caustica::description::{Crop, Integrator, Layer, LayerKind};
 use caustica::film::{self, ToneMap};
 use caustica::math::Sampler;
 use caustica::scene::bvh::TreeQuality;
-use caustica::session::INTEGRATOR_NAMES;
+use caustica::session::{INTEGRATOR_NAMES, MOST_LAYER_SAMPLES};
 use caustica::transport::{Heuristic, StrategySet};
 use caustica_clips::Layout;
 use caustica_compare::{DEFAULT_METHODS, EYE_ONLY};
@@ -176,6 +176,9 @@ pub struct Render {
     /// What becomes of the light image, which holds what light paths splat: most caustics
     #[arg(long, value_name = "CHOICE", value_enum, default_value_t = LightImageChoice::On)]
     pub light_image: LightImageChoice,
+    /// Layers of OUTPUT.exr beside the picture, such as albedo,normal,depth [default: as the scene's `aov` integrator says]
+    #[arg(long, value_name = "LIST", value_parser = parse_layers, long_help = layers_help())]
+    pub layers: Option<LayerList>,
     #[command(flatten)]
     pub look: Look,
     /// Print one sample of the render that the other options ask for, strategy by strategy, instead of rendering
@@ -184,6 +187,10 @@ pub struct Render {
     #[command(flatten)]
     pub voice: Voice,
 }
+
+/// Layers beside a picture.
+#[derive(Clone, Debug)]
+pub struct LayerList(pub Vec<Layer>);
 
 /// How a long render is kept safe.
 #[derive(Clone, Debug, Args)]
@@ -665,6 +672,34 @@ fn integrator_help() -> String {
         help.push_str(&format!("\n  {name:<12} {what}"));
     }
     help
+}
+
+fn layers_help() -> String {
+    let kinds: Vec<&str> = LayerKind::ALL.iter().map(|kind| kind.name()).collect();
+    format!(
+        "Layers of OUTPUT.exr beside the picture, of what is seen first: KIND or NAME:KIND, between commas; `none` for \
+         none [default: those that the scene's `aov` integrator lists]\n\
+         Kinds: normal (sh_normal), {}\n\
+         They are means by the pixel filter over the first {MOST_LAYER_SAMPLES} samples of each pixel, whose rays are \
+         traced again after the render; indices are those of the sample next to the pixel's centre. Where nothing is \
+         seen they are zero. Denoisers ask for `albedo,normal`",
+        kinds.join(", ")
+    )
+}
+
+fn parse_layers(text: &str) -> Result<LayerList, String> {
+    if text.trim() == "none" {
+        return Ok(LayerList(Vec::new()));
+    }
+    let mut layers: Vec<Layer> = Vec::new();
+    for entry in text.split(',') {
+        let layer: Layer = entry.trim().parse()?;
+        if layers.iter().any(|other| other.collides(&layer)) {
+            return Err(format!("two layers are called `{}`", layer.name));
+        }
+        layers.push(layer);
+    }
+    Ok(LayerList(layers))
 }
 
 fn parse_duration(text: &str) -> Result<Duration, String> {

@@ -21,7 +21,7 @@ pub fn run(args: &Info, console: &mut Console) -> Result<ExitCode, Failure> {
         return film_info(film, console);
     }
     let from = Provision { trust: loading::trust(args.untrusted), variables: &args.definitions };
-    let (description, _) = loading::description(args.scene.as_deref(), &from, console)?;
+    let description = loading::description(args.scene.as_deref(), &from, console)?.description;
     let outline = outline(&description);
     let scene = loading::scene(description, TreeQuality::default(), console)?;
     let info = describe(&scene, outline);

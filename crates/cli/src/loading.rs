@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use caustica::description::{Camera, Integrator};
+use caustica::description::{Camera, Integrator, Layer};
 use caustica::import::{self, Provision, Trust};
 use caustica::scene::Diagnostic;
 use caustica::scene::bvh::TreeQuality;
@@ -24,15 +24,26 @@ pub struct Depths {
     pub roulette_start: Option<u32>,
 }
 
+/// What a scene file holds, or the program itself.
+pub struct Read {
+    pub description: Description,
+    pub depths: Depths,
+    /// What it wants written beside the picture.
+    pub layers: Vec<Layer>,
+}
+
 /// The scene of that file, or the built-in one.
 pub fn description(
     path: Option<&Path>,
     provision: &Provision<'_>,
     console: &mut Console,
-) -> Result<(Description, Depths), Failure> {
+) -> Result<Read, Failure> {
     let Some(path) = path else {
         return match provision.variables {
-            [] => Ok((default_scene::description(), Depths::default())),
+            [] => {
+                let (description, depths) = (default_scene::description(), Depths::default());
+                Ok(Read { description, depths, layers: Vec::new() })
+            }
             _ => Err(Failure::Usage("the built-in scene has no variables".into())),
         };
     };
@@ -43,7 +54,7 @@ pub fn description(
         Diagnostic::error(format!("`{}` carries tests but no scene", path.display()))
             .hint("run it with `caustica test`")
     })?;
-    Ok((description, depths))
+    Ok(Read { description, depths, layers: loaded.layers })
 }
 
 /// The description made ready.
@@ -64,6 +75,8 @@ pub struct Opened {
     pub depths: Depths,
     /// Its camera.
     pub camera: Camera,
+    /// What it wants written beside the picture.
+    pub layers: Vec<Layer>,
 }
 
 /// Loads what is to be rendered.
@@ -77,13 +90,14 @@ pub fn open_with<T>(
     console: &mut Console,
     look: impl FnOnce(&mut Description) -> T,
 ) -> Result<(Opened, T), Failure> {
-    let (mut description, depths) = description(source.scene.as_deref(), &source.provision(), console)?;
+    let read = description(source.scene.as_deref(), &source.provision(), console)?;
+    let Read { mut description, depths, layers } = read;
     override_film(&mut description, source, console)?;
     let seen = look(&mut description);
     let (integrator, samples) = (description.integrator, description.samples.max(1));
     let camera = description.camera.clone();
     let scene = scene(description, source.tree.into(), console)?;
-    Ok((Opened { scene, integrator, samples, depths, camera }, seen))
+    Ok((Opened { scene, integrator, samples, depths, camera, layers }, seen))
 }
 
 /// Loads a scene to be looked into, its picture made smaller if a longest side is given; and the names of its shapes.
@@ -92,7 +106,8 @@ pub fn open_shrunk(
     side: Option<u32>,
     console: &mut Console,
 ) -> Result<(Scene, Vec<String>, Depths), Failure> {
-    let (mut description, depths) = description(source.scene.as_deref(), &source.provision(), console)?;
+    let Read { mut description, depths, .. } =
+        description(source.scene.as_deref(), &source.provision(), console)?;
     override_film(&mut description, source, console)?;
     if let Some(side) = side {
         caustica_verify::shrink(&mut description.film, side);

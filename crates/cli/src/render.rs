@@ -1,7 +1,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use caustica::description::Integrator;
+use caustica::description::{Integrator, Layer};
 use caustica::film::{FilmFacts, Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::scene::camera::Joins;
@@ -18,6 +18,10 @@ use crate::loading::{self, Depths};
 use crate::outputs::{Outputs, check_replaceable};
 use crate::progress::Bar;
 use crate::{prompt, replay};
+
+/// `--layers` with a film.
+const NO_LAYERS: &str = "films hold no layers: use `--layers` when the picture is written. `caustica render SCENE \
+    --checkpoint FILM --resume --layers …` makes one of a film";
 
 /// What `--json` prints, beside warnings.
 #[derive(Serialize)]
@@ -39,16 +43,21 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let (opened, hash) = loading::open_with(&args.source, console, content_hash)?;
     let scene = opened.scene;
     let settings = settings(&args.method, &scene, (opened.integrator, opened.depths));
+    let layers = args.layers.clone().map_or(opened.layers, |list| list.0);
     if let Some(sample) = args.replay {
         return replay::run(&scene, settings, sample, console);
     }
     let outputs = Outputs::new(args)?;
+    if let (Outputs::Film(_), Some(_)) = (&outputs, &args.layers) {
+        return Err(Failure::Usage(NO_LAYERS.into()));
+    }
     let of = provenance(&args.source.name(), &hash, &settings);
     let (checkpoint, record) = Checkpoint::open(&args.checkpoint)?.unzip();
     let options = options(args, settings, opened.samples);
     let wanted =
         u64::from(options.first_sample)..u64::from(options.first_sample) + u64::from(options.samples);
     let session = checkpoint::session(&scene, options, (record.flatten(), &of))?;
+    session.check_layers(&layers)?;
     if let (Outputs::Film(path), false) = (&outputs, args.force) {
         let facts = FilmFacts { samples: wanted.into(), ..session.facts(&of, 0.0) };
         check_replaceable(path, (session.film().layout(), &facts))?;
@@ -58,7 +67,7 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let checkpoint = checkpoint.as_ref();
     let report = run_with_bar(&session, args.noise, (&interrupts, console), checkpoint.map(|c| (c, &of)))?;
     let kept = checkpoint.map_or(Ok(()), |c| c.write(&session, (&of, &report)));
-    let written = save_all(&session, (&of, &report), (args, &outputs), &interrupts);
+    let written = save_all(&session, (&of, &report), (args, &outputs, &layers), &interrupts);
     // If either is there, nothing is lost.
     let light_image = match (written, kept) {
         (Ok(light_image), Ok(())) => light_image,
@@ -75,12 +84,14 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
 fn save_all(
     session: &Session<'_>,
     what: (&Provenance, &Report),
-    (args, outputs): (&Render, &Outputs),
+    (args, outputs, layers): (&Render, &Outputs, &[Layer]),
     interrupts: &Interrupts,
 ) -> Result<Option<LightImage>, Failure> {
     match outputs {
         Outputs::Film(path) => checkpoint::write_output(path, session, what).map(|()| None),
-        Outputs::Pictures { exr, png } => save(session, what.1, (args, [exr, png]), interrupts).map(Some),
+        Outputs::Pictures { exr, png } => {
+            save(session, what.1, (args, [exr, png], layers), interrupts).map(Some)
+        }
     }
 }
 
@@ -186,10 +197,11 @@ fn run_with_bar(
 fn save(
     session: &Session<'_>,
     report: &Report,
-    (args, [exr, png]): (&Render, [&Path; 2]),
+    (args, [exr, png], layers): (&Render, [&Path; 2], &[Layer]),
     interrupts: &Interrupts,
 ) -> Result<LightImage, Failure> {
-    let picture = &session.film().develop();
+    let channels = session.layers(layers)?;
+    let picture = &Picture { channels, ..session.film().develop() };
     let mut metadata = session.metadata(report);
     metadata.set("scene", args.source.name());
     let save_exr =

@@ -27,6 +27,6 @@ pub use film::{Film, FilmCounts, LightBuffer};
 pub use layout::{FilmLayout, Window};
 pub use openexr::{Metadata, read_exr, write_exr, write_layers};
 pub use output::{check_writable, remove_leftovers, write_atomically, write_file};
-pub use picture::{LightImage, Picture};
+pub use picture::{Channel, LightImage, Picture};
 pub use record::{FilmFacts, FilmRecord, MOST_SAMPLES, Provenance, SampleRanges, write_film};
 pub use tonemap::{ToneMap, to_display};

@@ -67,6 +67,17 @@ pub struct Picture {
     /// Half the width of the 95 % interval around eye and light image together, where it is known: see
     /// [`ErrorBars`](crate::ErrorBars).
     pub error: Option<Vec<Rgb>>,
+    /// What else is known of its pixels.
+    pub channels: Vec<Channel>,
+}
+
+/// A channel beside the picture, such as `depth.T`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name, with that of its layer.
+    pub name: String,
+    /// Its values, row by row.
+    pub values: Vec<f32>,
 }
 
 impl Picture {
@@ -84,7 +95,8 @@ impl Picture {
         check_window(self.width, self.height, self.window)?;
         check_layer(self.eye.len(), self.window)?;
         check_layer(self.light.len(), self.window)?;
-        self.error.as_ref().map_or(Ok(()), |error| check_layer(error.len(), self.window))
+        self.error.as_ref().map_or(Ok(()), |error| check_layer(error.len(), self.window))?;
+        self.channels.iter().try_for_each(|c| check_layer(c.values.len(), self.window))
     }
 }
 
@@ -109,6 +121,7 @@ pub(crate) fn develop<I: Iterator<Item = [i64; CHANNELS]>>(
         eye: layer(EYE, counts.eye_samples),
         light: layer(LIGHT, counts.light_samples),
         error: None,
+        channels: Vec::new(),
     }
 }
 
@@ -127,6 +140,7 @@ mod tests {
             eye: vec![Rgb::new(1.0, 2.0, 3.0)],
             light: vec![Rgb::splat(0.5)],
             error: None,
+            channels: Vec::new(),
         };
         for (name, expected) in [("on", [1.5, 2.5, 3.5]), ("off", [1.0, 2.0, 3.0]), ("only", [0.5; 3])] {
             let choice: LightImage = name.parse().unwrap();

@@ -63,11 +63,12 @@ const TESTS: &str = r#"<scene>
 
 /// Most of what Mitsuba's scenes are made of.
 const MITSUBA: [&str; 3] = [
-    include_str!("../../../peers/mitsuba/scenes/solids.xml"),
+    include_str!("solids.xml"),
     r##"<?xml version="1.0"?>
 <scene version="3.0.0">
   <default name="spp" value="16"/><default name="kind" value="thinlens"/><path value="."/>
-  <integrator type="path"><integer name="max_depth" value="-1"/></integrator>
+  <integrator type="aov"><string name="aovs" value="dd.y:depth,nn:sh_normal"/><integrator type="path" name="a">
+    <integer name="max_depth" value="-1"/></integrator></integrator>
   <sensor type="$kind">
     <float name="fov" value="45.5"/><string name="fov_axis" value="smaller"/>
     <float name="aperture_radius" value=".1"/><float name="focus_distance" value="4"/>
@@ -148,6 +149,7 @@ fn film([width, height]: [u32; 2], [x, y, w, h]: [u32; 4]) -> Vec<u8> {
         eye: ramp(0.25),
         light: ramp(0.5),
         error: None,
+        channels: Vec::new(),
     };
     let mut facts = Metadata::new();
     facts.set("seed", 7);

@@ -15,6 +15,7 @@ mod suggest;
 
 use std::path::Path;
 
+use caustica_scene::description::Layer;
 use caustica_scene::{Description, Diagnostic, MemoryLimit};
 
 use files::Folder;
@@ -39,6 +40,8 @@ pub struct Loaded {
     pub max_depth: Option<u32>,
     /// After how many bounces roulette begins, if the file says so.
     pub roulette_start: Option<u32>,
+    /// What the file wants written beside the picture.
+    pub layers: Vec<Layer>,
 }
 
 /// What a scene is given beside its own file.

@@ -2,6 +2,7 @@
 //! it: replaying one sample, running the tests that a scene file carries, and describing what was loaded.
 
 pub mod info;
+mod layers;
 mod names;
 mod provenance;
 pub mod pyramid;
@@ -12,6 +13,7 @@ mod session;
 mod stages;
 mod workers;
 
+pub use layers::MOST_LAYER_SAMPLES;
 pub use names::{INTEGRATOR_NAMES, integrator_by_name, integrator_name};
 pub use provenance::{content_hash, provenance};
 pub use session::{Control, Progress, RenderError, RenderOptions, Report, Session, available_threads};

@@ -247,6 +247,11 @@ impl<'a> Session<'a> {
         Ok(Report { stopped, ..self.report(added, start.elapsed(), threads) })
     }
 
+    /// Worker threads.
+    pub(crate) fn threads(&self) -> usize {
+        self.options.thread_count()
+    }
+
     /// For how long the options say.
     pub(crate) fn budget(&self) -> Budget {
         self.options.budget()

@@ -1,11 +1,16 @@
 //! The pyramid's strategies add up to the picture.
 
 use caustica_film::{Film, Picture};
+use caustica_math::Rgb;
+use caustica_math::stats::{Moments, sidak, welch_t_test};
 use caustica_render::pyramid::Pyramid;
 use caustica_render::{Control, RenderOptions, Session};
+use caustica_scene::description::{LightKind, MaterialKind};
 use caustica_scene::{Description, Scene};
 use caustica_testkit::agreement::flatten;
+use caustica_testkit::build::{diffuse, glass, light, look, quad, sphere};
 use caustica_testkit::scenes::{ball, glass_kind, open_box, under_the_sky};
+use caustica_testkit::seed::seed;
 use caustica_transport::Settings;
 
 fn options(samples: u32) -> RenderOptions {
@@ -94,6 +99,49 @@ fn unweighted_pictures_hold_all_of_their_light() {
             assert!((0..3).all(near), "{}: {w:?} {u:?}", layer.strategy);
         }
     }
+}
+
+/// Aimed rays share the paths of s = 0 with the walk, and the picture without weights holds the light of both: as much
+/// as the walk finds alone, by Welch's t-test at 10⁻³ over parts of different seeds, Šidák-corrected over the strategies.
+#[test]
+fn unweighted_pictures_of_aimed_rays_hold_the_same_light() {
+    // A floor under a sky, with a ball of glass that is seen in a mirror.
+    let mut d = caustica_testkit::build::scene(6);
+    look(&mut d, [0.0, 0.3, -0.6], [0.0, -0.35, 0.6]);
+    let grey = diffuse(&mut d, 0.6);
+    let mirror = d.add_material(MaterialKind::Mirror { reflectance: Rgb::splat(0.9) });
+    let glass = glass(&mut d);
+    quad(&mut d, [-1.0, -1.0, -1.0], [0.0, 0.0, 2.0], [2.0, 0.0, 0.0], grey);
+    sphere(&mut d, [0.0, -0.4, 0.6], 0.4, mirror);
+    sphere(&mut d, [0.1, -0.7, -0.2], 0.25, glass);
+    light(&mut d, LightKind::Constant { radiance: Rgb::splat(1.0) });
+    let scene = scene(d);
+    // The lengths of paths from the floor that is seen in the mirror through glass to the sky.
+    let lengths = 3..=6;
+    let [without, with] = [0, 2].map(|aimed_rays| {
+        let mut means = vec![Moments::default(); 7];
+        for part in 0..24 {
+            let mut options = options(400);
+            options.settings.aimed_rays = aimed_rays;
+            options.settings.seed = seed(100 * u64::from(aimed_rays) + part);
+            let pyramid = Pyramid::new(&scene, options, 6).unwrap();
+            pyramid.run(&Control::default(), |_| ()).unwrap();
+            for layer in pyramid.layers().iter().filter(|l| l.strategy.s == 0) {
+                let eye = layer.unweighted.develop().eye;
+                let mean = eye.iter().map(|p| f64::from(p.0[1])).sum::<f64>() / eye.len() as f64;
+                means[layer.strategy.t as usize - 1].push(mean);
+            }
+        }
+        means
+    });
+    let level = sidak(1e-3, lengths.clone().count());
+    for edges in lengths {
+        let p = welch_t_test(&without[edges], &with[edges], 0.0);
+        println!("{edges} edges: {:.5} for {:.5}, p = {p:.2e}", with[edges].mean, without[edges].mean);
+        assert!(p > level && with[edges].mean > 0.0, "{edges} edges: p = {p:.1e}");
+    }
+    // The rays were aimed: nothing else differs.
+    assert!(with[6].variance() < without[6].variance() && with[6].mean != without[6].mean);
 }
 
 /// The whole is the picture that a session makes, but for roulette among small contributions.

@@ -4,6 +4,7 @@
 //! - [`scene::Scene`]: flat tables and `u32` ids made from it, with [`surface`]s, [`bsdf`]s, [`light`]s, the
 //!   [`camera`] and the ray-intersection tree ([`bvh`]).
 
+mod albedo;
 mod attributes;
 pub mod bsdf;
 pub mod bvh;

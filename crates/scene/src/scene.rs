@@ -147,6 +147,9 @@ impl Scene {
             }
         }
         for light in &description.lights {
+            if let LightKind::Collimated { shape, .. } = light.kind {
+                self.surfaces.shapes[shape as usize].is_collimated = true;
+            }
             let made = self.flatten_light(&light.kind, w);
             match made.map_err(|m| Diagnostic::error(m).at(light.origin.clone()))? {
                 Some((flat, power)) if power > 0.0 && power.is_finite() => {
@@ -246,6 +249,13 @@ impl Scene {
     pub fn lamp_at(&self, point: &SurfacePoint) -> Option<LightPoint> {
         let light = self.surfaces.shapes[point.shape as usize].light?;
         Some(LightPoint::on_surface(light, point))
+    }
+
+    /// Whether the point belongs to a lamp, one that emits along its normals alone included.
+    #[inline]
+    pub fn is_on_lamp(&self, point: &SurfacePoint) -> bool {
+        let shape = &self.surfaces.shapes[point.shape as usize];
+        shape.light.is_some() || shape.is_collimated
     }
 
     /// The radiance that a surface emits in a direction; black if it is no lamp.

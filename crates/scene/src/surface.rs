@@ -28,6 +28,8 @@ pub struct FlatShape {
     pub material: u32,
     /// Index into the scene's lamps, if it is one.
     pub light: Option<u32>,
+    /// Whether it emits along its normals alone: no camera sees that, and none sees the shape if it hides lamps.
+    pub is_collimated: bool,
     /// Ids of its primitives.
     pub first_primitive: u32,
     /// How many primitives it has.
@@ -100,6 +102,18 @@ struct FlatSphere {
     shape: u32,
     /// World to shape directions, for the uv coordinates.
     rows: [Vec3; 3],
+}
+
+impl FlatSphere {
+    /// Texture coordinates where the outward normal is that.
+    #[inline]
+    fn uv(&self, normal: Vec3) -> Vec2 {
+        let [x, y, z] = self.rows.map(|row| row.dot(normal));
+        Vec2::new(
+            0.5 + atan2(y, x) * (0.5 * std::f32::consts::FRAC_1_PI),
+            0.5 + asin(z) * std::f32::consts::FRAC_1_PI,
+        )
+    }
 }
 
 /// The relative error of a hit's position, with room to spare: a dozen roundings of 2⁻²⁴.
@@ -237,15 +251,7 @@ impl Surfaces {
         let sphere = &self.spheres[primitive as usize - self.triangles.len()];
         let d = &sphere.data;
         let flat = &self.shapes[sphere.shape as usize];
-        let uv = if flat.needs_uv {
-            let [x, y, z] = sphere.rows.map(|row| row.dot(normal));
-            Vec2::new(
-                0.5 + atan2(y, x) * (0.5 * std::f32::consts::FRAC_1_PI),
-                0.5 + asin(z) * std::f32::consts::FRAC_1_PI,
-            )
-        } else {
-            Vec2::default()
-        };
+        let uv = if flat.needs_uv { sphere.uv(normal) } else { Vec2::default() };
         SurfacePoint {
             position: d.center + normal * d.radius,
             normal,

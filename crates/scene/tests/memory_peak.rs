@@ -3,7 +3,7 @@
 
 use caustica_math::Vec3;
 use caustica_scene::bvh::TreeQuality;
-use caustica_scene::description::{Geometry, Mesh};
+use caustica_scene::description::{CameraKind, Geometry, Mesh};
 use caustica_scene::memory::needed;
 use caustica_scene::{Description, MemoryLimit, Scene};
 use caustica_testkit::build;
@@ -31,10 +31,16 @@ fn terrain(n: u32) -> Mesh {
 
 #[test]
 fn the_peak_is_foretold() {
-    for (tree, n) in [(TreeQuality::Fast, 500), (TreeQuality::Spatial, 700)] {
+    let eye = CameraKind::Perspective { fov: 60.0 };
+    let meter = CameraKind::IrradianceMeter { shape: 0 };
+    let cases =
+        [(TreeQuality::Fast, 500, eye), (TreeQuality::Spatial, 700, eye), (TreeQuality::Fast, 1000, meter)];
+    for (tree, n, camera) in cases {
         let mut d = Description::default();
         let m = build::diffuse(&mut d, 0.5);
         build::add(&mut d, "terrain", Geometry::Mesh(terrain(n)), m);
+        d.camera.kind = camera;
+        (d.film.width, d.film.height) = (1, 1);
         let foretold = needed(&d, tree);
         let Some([_, before]) = memory() else { return };
         let scene = Scene::within(d, tree, MemoryLimit::Bytes(foretold)).unwrap();

@@ -25,8 +25,8 @@ pub fn bytes_of_seed(seed: u64) -> Vec<u8> {
     (0..64).flat_map(word).collect()
 }
 
-/// A scene: one to six shapes of any material, now and then one of them as instances, up to three lamps beside those that are surfaces, any camera, and a
-/// film of a few pixels with any filter. A quarter of all scenes has numbers at the edges of what is valid.
+/// A scene: one to six shapes of any material, now and then one of them as instances, meshes with colours of their own,
+/// up to three lamps beside those that are surfaces, any camera, and a film of a few pixels with any filter. A quarter of all scenes has numbers at the edges of what is valid.
 ///
 /// Everything is valid for [`caustica_scene::Scene::new`] but what rounding may spoil at extreme scales.
 pub fn random_scene(choices: &mut Choices) -> Description {
@@ -42,11 +42,12 @@ pub fn random_scene(choices: &mut Choices) -> Description {
     for _ in 0..=choices.below(6) {
         things::shape(&mut d, scale, choices);
     }
-    for _ in 0..choices.below(4) {
-        lamp(&mut d, scale, choices);
-    }
+    // Lamps name shapes by their numbers, which are settled by then.
     if choices.below(4) == 3 {
         things::instances(&mut d, scale, choices);
+    }
+    for _ in 0..choices.below(4) {
+        lamp(&mut d, scale, choices);
     }
     d
 }
@@ -112,7 +113,7 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
     let colour = choices.light();
     // Light spreads over the square of the scene's size.
     let spread = colour * (scale * scale);
-    let kind = match choices.below(7) {
+    let kind = match choices.below(10) {
         0 => LightKind::Point { position, intensity: spread },
         1 => {
             let narrowest = if choices.is_wild() { 1e-3 } else { 0.5 };
@@ -133,6 +134,12 @@ fn lamp(d: &mut Description, scale: f32, choices: &mut Choices) {
             let (scale, darkened) = (4.0 * choices.unit(), choices.once_in(2));
             LightKind::Sun { daylight: daylight(choices), aperture, scale, darkened }
         }
+        6 => projector(position, direction, (scale * scale, choices)),
+        7 => linear_spot(position, direction, (spread, choices)),
+        8 => match things::collimated(d, choices) {
+            Some(kind) => kind,
+            None => LightKind::Constant { radiance: colour },
+        },
         _ => LightKind::Environment {
             image: caustica_scene::description::ImageId(choices.below(2) as u32),
             to_world: Transform::rotate(f64::from(choices.signed()) * 180.0, [0.0, 1.0, 0.3]),
@@ -149,4 +156,41 @@ fn daylight(choices: &mut Choices) -> Daylight {
     let [x, y, z] = choices.direction();
     let to_sun = to_world.vector(caustica_math::Vec3::new(x, y, z.abs() + 0.01)).to_array();
     Daylight { to_world, to_sun, turbidity: 1.0 + 9.0 * choices.unit() }
+}
+
+/// A frame at that place whose +z goes in that direction.
+fn aimed([x, y, z]: [f32; 3], direction: [f32; 3]) -> Transform {
+    let at = [x, y, z].map(f64::from);
+    let target = [0, 1, 2].map(|i| at[i] + f64::from(direction[i]));
+    Transform::look_at(at, target, [1.0, 0.0, 0.3])
+}
+
+fn projector(position: [f32; 3], direction: [f32; 3], (scale, choices): (f32, &mut Choices)) -> LightKind {
+    LightKind::Projector {
+        to_world: aimed(position, direction),
+        irradiance: things::texture(true, choices),
+        scale: scale * choices.unit(),
+        fov: if choices.is_wild() {
+            *choices.pick(&[60.0, 0.01, 179.0])
+        } else {
+            5.0 + 150.0 * choices.unit()
+        },
+        aspect: 0.25 + 3.0 * choices.unit(),
+    }
+}
+
+fn linear_spot(
+    position: [f32; 3],
+    direction: [f32; 3],
+    (intensity, choices): (Rgb, &mut Choices),
+) -> LightKind {
+    let outer_angle = if choices.is_wild() {
+        *choices.pick(&[40.0, 1e-3, 89.9, 180.0])
+    } else {
+        1.0 + 88.0 * choices.unit()
+    };
+    let picture = (outer_angle < 90.0 && choices.once_in(2)).then(|| things::texture(false, choices));
+    let inner_angle = outer_angle * choices.unit();
+    let to_world = aimed(position, direction);
+    LightKind::LinearSpot { to_world, intensity, picture, inner_angle, outer_angle }
 }

@@ -22,7 +22,7 @@ impl Kernel<'_> {
         let mut ray = *ray;
         for _ in 0..MOST_PASSED {
             let point = self.scene.closest(&ray)?;
-            if self.scene.lamp_at(&point).is_none() {
+            if !self.scene.is_on_lamp(&point) {
                 return Some(point);
             }
             let beyond = point.off_surface(ray.direction);
@@ -38,7 +38,7 @@ impl Kernel<'_> {
     pub(crate) fn is_seen_from_camera(&self, point: &SurfacePoint, link: &CameraLink) -> bool {
         let start = point.off_surface(link.direction);
         if self.scene.camera.hides_lamps() {
-            self.scene.lamp_at(point).is_none() && self.is_free_but_for_lamps(start, link.end)
+            !self.scene.is_on_lamp(point) && self.is_free_but_for_lamps(start, link.end)
         } else {
             self.scene.visible(start, link.end)
         }

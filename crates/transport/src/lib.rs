@@ -10,6 +10,7 @@ pub mod edge;
 pub mod fault;
 mod hidden;
 mod kernel;
+mod layers;
 mod light_tracer;
 mod numbers;
 mod path_tracer;
@@ -21,6 +22,7 @@ mod walk;
 pub mod weight;
 
 pub use kernel::{Kernel, Scratch, Settings};
+pub use layers::Seen;
 pub use sink::{Contribution, PathView, Sink};
 pub use strategy::{Strategy, StrategySet};
 pub use subpaths::Subpaths;

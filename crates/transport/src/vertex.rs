@@ -156,6 +156,12 @@ impl Vertex {
         self.bump.map(|rule| Bump { normal: self.local, rule })
     }
 
+    /// The shading normal in the world, on the side of the geometric one's front: that of the BSDF, if it has its own.
+    pub fn shading_normal(&self) -> Vec3 {
+        let normal = self.bump().map_or(self.point.frame.z, |b| self.point.frame.to_world(b.normal));
+        if self.turned { -normal } else { normal }
+    }
+
     /// The direction to the previous vertex, in the shading frame. On the horizon where nothing is scattered.
     #[inline]
     fn local_prev(&self) -> Vec3 {

@@ -280,6 +280,32 @@ fn shifted_lenses_and_hidden_lamps() {
     check("hidden", d, 400, &[Bdpt, Naive, Path, Light, NoLightImage, ODD]);
 }
 
+/// A sheet that emits along its normals covers all of the picture, before nothing. A camera that hides lamps does not see
+/// it in the light of another, nor does light from it to the camera: as Mitsuba has it.
+#[test]
+fn hidden_beams() {
+    let mut d = caustica_testkit::build::scene(4);
+    let white = caustica_testkit::build::diffuse(&mut d, 0.8);
+    let sheet = [[-9.0, -9.0, 3.0], [0.0, 18.0, 0.0], [18.0, 0.0, 0.0]];
+    let shape = caustica_testkit::build::quad(&mut d, sheet[0], sheet[1], sheet[2], white) as u32;
+    let kind = LightKind::Collimated { shape, exitance: Rgb::splat(3.0).into() };
+    caustica_testkit::build::light(&mut d, kind);
+    caustica_testkit::build::point_light(&mut d, [0.5, 1.0, 0.5], 2.0);
+    for hides in [false, true] {
+        d.camera.hides_lamps = hides;
+        let scene = flatten(d.clone());
+        for way in [Bdpt, Naive, Path, Light, NoLightImage] {
+            let plan = Plan { passes: 50, block: 1, only: None };
+            let mean = estimate(&scene, &way.settings(7), plan).whole.mean;
+            // `Naive` meets no point light.
+            assert!(
+                if hides || way == Naive { mean == 0.0 } else { mean > 0.05 },
+                "{way:?}, {hides}: {mean}"
+            );
+        }
+    }
+}
+
 #[test]
 fn meters() {
     let mut d = ball(metal_kind(Some(0.3)));

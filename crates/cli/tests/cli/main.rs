@@ -10,6 +10,7 @@ mod films;
 mod images;
 mod info;
 mod interrupt;
+mod layers;
 mod mitsuba;
 mod outputs;
 mod pyramid;

@@ -2,7 +2,7 @@
 //!
 //! A file has one part. Its data window is the crop, its display window the full picture, and its
 //! channels are `combined.R/G/B`, `eye.R/G/B` and `light.R/G/B`, with `error.R/G/B` where error bars are known: half
-//! the width of the 95 % interval around eye and light image together. Every fact about the render is a text
+//! the width of the 95 % interval around eye and light image together, and the picture's further channels. Every fact about the render is a text
 //! attribute whose name begins with `caustica.`.
 
 mod read;
@@ -18,6 +18,9 @@ const PREFIX: &str = "caustica.";
 
 /// The layers that a picture is read from; the combined one follows from them.
 const LAYERS: [&str; 2] = ["eye", "light"];
+
+/// The layer that is shown.
+const COMBINED: &str = "combined";
 
 /// The layer of error bars.
 const ERROR: &str = "error";

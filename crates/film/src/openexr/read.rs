@@ -8,20 +8,21 @@ use std::path::Path;
 use caustica_math::Rgb;
 use exr::meta::header::Header;
 use exr::prelude::{
-    AttributeValue, MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2, attribute::ChannelList,
-    read,
+    AnyChannel, AttributeValue, FlatSamples, MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2,
+    attribute::ChannelList, read,
 };
 
-use super::{ERROR, LAYERS, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
+use super::write::split;
+use super::{COMBINED, ERROR, LAYERS, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
 use crate::FilmError;
 use crate::layout::{Window, check_window};
-use crate::picture::Picture;
+use crate::picture::{Channel, Picture};
 
 /// No compression of the format packs lossless pixels closer than this (deflate reaches 1032 to 1).
 const CLOSEST_PACKING: u64 = 1100;
 
 /// Reads a picture that [`write_exr`](super::write_exr) wrote, and what is known about it. The layers
-/// `eye` and `light` must be there; anything else in the file is passed over.
+/// `eye` and `light` must be there; other channels go with the picture.
 pub fn read_exr(path: &Path) -> Result<(Picture, Metadata), FilmError> {
     // The decoder is other people's code, and no file may bring the program down.
     catch_unwind(|| read_whole(path))
@@ -46,9 +47,13 @@ fn read_whole(path: &Path) -> Result<(Picture, Metadata), FilmError> {
     let light_samples = count(&metadata, LIGHT_PASSES).map_err(bad)?;
     file.rewind().map_err(io)?;
     let has_error = has_layer(&header.channels, ERROR);
+    let others = header.channels.list.iter().any(|c| is_other(&c.name.to_string()));
+    let channels = if others { other_channels(&file).map_err(|e| explain(path, e))? } else { Vec::new() };
+    file.rewind().map_err(io)?;
     let [eye, light, error] = pixels(file).map_err(|e| explain(path, e))?;
     let ([width, height], error) = (size, has_error.then_some(error));
-    Ok((Picture { width, height, window, eye_samples, light_samples, eye, light, error }, metadata))
+    let picture = Picture { width, height, window, eye_samples, light_samples, eye, light, error, channels };
+    Ok((picture, metadata))
 }
 
 fn explain(path: &Path, error: exr::error::Error) -> FilmError {
@@ -132,6 +137,30 @@ fn count(metadata: &Metadata, name: &str) -> Result<u64, String> {
         None => Ok(0),
         Some(value) => value.parse().map_err(|_| format!("`{PREFIX}{name}` is no number: `{value}`")),
     }
+}
+
+/// Whether a channel is none of those that every picture has.
+fn is_other(name: &str) -> bool {
+    !LAYERS.iter().chain(&[COMBINED, ERROR]).any(|layer| split(name).0 == *layer)
+}
+
+/// The channels beside the picture, as far as they have every pixel.
+fn other_channels(file: &File) -> exr::error::Result<Vec<Channel>> {
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(BufReader::new(file))?;
+    let list = image.layer_data.channel_data.list;
+    let whole = list.into_iter().filter(|c| c.sampling == Vec2(1, 1) && is_other(&c.name.to_string()));
+    let channel = |c: AnyChannel<FlatSamples>| Channel {
+        name: c.name.to_string(),
+        values: c.sample_data.values_as_f32().collect(),
+    };
+    Ok(whole.map(channel).collect())
 }
 
 /// The eye image, the light image and the error bars; black where there are none.

@@ -7,7 +7,7 @@ use exr::prelude::{Image, MetaData, SpecificChannels, WritableImage};
 use super::*;
 use crate::FilmError;
 use crate::layout::Window;
-use crate::picture::{LightImage, Picture};
+use crate::picture::{Channel, LightImage, Picture};
 
 /// A crop whose values have every kind of bits that a picture can have.
 fn picture() -> Picture {
@@ -24,6 +24,7 @@ fn picture() -> Picture {
         eye: layer(0),
         light: layer(9999),
         error: None,
+        channels: Vec::new(),
     }
 }
 
@@ -89,6 +90,40 @@ fn error_bars_are_a_layer() {
     assert_eq!(bits(&read.light), bits(&with.light));
     let short = Picture { error: Some(Vec::new()), ..picture() };
     assert!(matches!(write_exr(&path, &short, LightImage::On, &Metadata::new()), Err(FilmError::Layout(_))));
+}
+
+/// What lies beside the picture goes with it, in the format's own order; names that are taken are refused.
+#[test]
+fn further_channels_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("p.exr");
+    let channel = |name: &str, seed: u32| Channel {
+        name: name.into(),
+        values: (0..picture().window.pixels() as u32).map(|i| (i + seed) as f32 * 0.1).collect(),
+    };
+    let names = ["albedo.B", "albedo.G", "albedo.R", "dd.y.T", "n.X", "plain"];
+    let channels: Vec<Channel> = names.iter().zip(0..).map(|(name, seed)| channel(name, seed)).collect();
+    let mut turned = channels.clone();
+    turned.reverse();
+    let whole = Picture { channels: turned, ..picture() };
+    write_exr(&path, &whole, LightImage::On, &facts_of_a_render()).unwrap();
+    let (read, _) = read_exr(&path).unwrap();
+    assert_eq!(read.channels, channels);
+    assert_eq!((bits(&read.eye), bits(&read.light)), (bits(&whole.eye), bits(&whole.light)));
+    let header = &MetaData::read_from_file(&path, true).unwrap().headers[0];
+    let found: Vec<String> = header.channels.list.iter().map(|c| c.name.to_string()).collect();
+    let ours = found.iter().filter(|n| names.contains(&n.as_str()));
+    assert_eq!(ours.collect::<Vec<_>>(), names);
+    assert_eq!(found.len(), names.len() + 9);
+    let refused = |channels: Vec<Channel>| {
+        let picture = Picture { channels, ..picture() };
+        let error = write_exr(&path, &picture, LightImage::On, &Metadata::new()).unwrap_err();
+        assert!(matches!(error, FilmError::Layout(_)), "{error}");
+    };
+    refused(vec![channel("eye.T", 0)]);
+    refused(vec![channel("", 0)]);
+    refused(vec![channel("a.T", 0), channel("a.T", 1)]);
+    refused(vec![Channel { name: "a.T".into(), values: vec![0.0; 3] }]);
 }
 
 #[test]

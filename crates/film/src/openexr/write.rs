@@ -12,7 +12,7 @@ use exr::prelude::{
     ImageAttributes, IntegerBounds, Layer, LayerAttributes, LineOrder, SmallVec, Text, Vec2, WritableImage,
 };
 
-use super::{ERROR, LIGHT_IMAGE, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
+use super::{COMBINED, ERROR, LIGHT_IMAGE, LIGHT_PASSES, Metadata, PREFIX, SAMPLES};
 use crate::layout::{Window, check_layer, check_window};
 use crate::picture::{LightImage, Picture};
 use crate::{FilmError, output};
@@ -36,10 +36,27 @@ pub fn write_exr(
     facts.set(LIGHT_PASSES, picture.light_samples);
     facts.set(LIGHT_IMAGE, light_image);
     let combined = picture.combined(light_image);
-    let mut layers =
-        vec![("combined", combined.as_slice()), ("eye", &picture.eye), ("light", &picture.light)];
+    let mut layers = vec![(COMBINED, combined.as_slice()), ("eye", &picture.eye), ("light", &picture.light)];
     layers.extend(picture.error.as_ref().map(|error| (ERROR, error.as_slice())));
-    write(path, [picture.width, picture.height], picture.window, (&layers, &facts))
+    let mut names: Vec<&str> = picture.channels.iter().map(|c| c.name.as_str()).collect();
+    names.sort_unstable();
+    let is_taken = |name: &str| layers.iter().any(|(l, _)| split(name).0 == *l);
+    if let Some(name) = names.iter().find(|n| n.is_empty() || n.len() > LONGEST_NAME || is_taken(n)) {
+        return Err(FilmError::Layout(format!("`{name}` cannot be the name of a channel")));
+    }
+    if let Some(twice) = names.windows(2).find(|n| n[0] == n[1]) {
+        return Err(FilmError::Layout(format!("two channels are called `{}`", twice[0])));
+    }
+    let mut channels = channels_of(&layers);
+    channels.extend(picture.channels.iter().map(|c| {
+        AnyChannel::new(Text::from_slice_unchecked(c.name.as_bytes()), FlatSamples::F32(c.values.clone()))
+    }));
+    write(path, [picture.width, picture.height], picture.window, (channels, &facts))
+}
+
+/// The name of a channel's layer, and the rest.
+pub(super) fn split(channel: &str) -> (&str, &str) {
+    channel.rsplit_once('.').unwrap_or(("", channel))
 }
 
 /// Writes layers of linear pixels by their names, each of which holds the window of a picture of that width and
@@ -64,16 +81,16 @@ pub fn write_layers(
         }
         check_layer(pixels.len(), window)?;
     }
-    write(path, size, window, (layers, metadata))
+    write(path, size, window, (channels_of(layers), metadata))
 }
 
 fn write(
     path: &Path,
     size: [u32; 2],
     window: Window,
-    (layers, facts): (&[(&str, &[Rgb])], &Metadata),
+    (channels, facts): (Channels, &Metadata),
 ) -> Result<(), FilmError> {
-    let mut image = describe(size, window, layers);
+    let mut image = describe(size, window, channels);
     for (name, value) in facts.iter() {
         image.layer_data.attributes.other.insert(attribute_name(name)?, text(value));
     }
@@ -102,13 +119,12 @@ fn attribute_name(name: &str) -> Result<Text, FilmError> {
     Ok(Text::from_slice_unchecked(full.as_bytes()))
 }
 
-/// The layers in the terms of the format.
-fn describe(
-    [width, height]: [u32; 2],
-    window: Window,
-    layers: &[(&str, &[Rgb])],
-) -> Image<Layer<AnyChannels<FlatSamples>>> {
-    let mut channels = SmallVec::new();
+/// Channels in the terms of the format.
+type Channels = SmallVec<[AnyChannel<FlatSamples>; 4]>;
+
+/// The channels of layers of colours.
+fn channels_of(layers: &[(&str, &[Rgb])]) -> Channels {
+    let mut channels = Channels::new();
     for (layer, pixels) in layers {
         for (index, channel) in ["R", "G", "B"].into_iter().enumerate() {
             let samples = pixels.iter().map(|Rgb(p)| p[index]).collect();
@@ -116,6 +132,15 @@ fn describe(
             channels.push(AnyChannel::new(name.as_str(), FlatSamples::F32(samples)));
         }
     }
+    channels
+}
+
+/// A picture in the terms of the format.
+fn describe(
+    [width, height]: [u32; 2],
+    window: Window,
+    channels: Channels,
+) -> Image<Layer<AnyChannels<FlatSamples>>> {
     // Lines in order, because otherwise the threads that compress them would race for the file.
     let encoding = Encoding {
         compression: Compression::ZIP16,

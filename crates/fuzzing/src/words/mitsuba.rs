@@ -130,6 +130,8 @@ pub const MITSUBA: &[&str] = &[
     "direct",
     "ptracer",
     "aov",
+    "aovs",
+    "albedo:albedo,uv:uv",
     "max_depth",
     "rr_depth",
     "hide_emitters",

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use caustica_math::Rgb;
-use caustica_scene::description::{GroupId, ImageId, Material, MaterialId, MaterialKind, Mesh};
+use caustica_scene::description::{GroupId, ImageId, Layer, Material, MaterialId, MaterialKind, Mesh};
 use caustica_scene::memory::shortage;
 use caustica_scene::{Description, Diagnostic, Origin};
 
@@ -27,6 +27,8 @@ pub(super) struct Context<'c> {
     pub(super) max_depth: Option<u32>,
     /// The bounces before roulette, if the scene says so.
     pub(super) roulette_start: Option<u32>,
+    /// What is to be written beside the picture.
+    pub(super) layers: Vec<Layer>,
     /// Whether the camera does not see lamps.
     pub(super) hides_lamps: bool,
     /// Sensors in shapes: the place of each in the tree, and of its shape in the description.
@@ -58,6 +60,7 @@ impl<'c> Context<'c> {
             description: Description { samples: 4, ..Description::default() },
             max_depth: None,
             roulette_start: None,
+            layers: Vec::new(),
             hides_lamps: false,
             meters: Vec::new(),
             meshes: BTreeMap::new(),

@@ -1,11 +1,12 @@
 //! `<integrator>`.
 
 use caustica_scene::Diagnostic;
-use caustica_scene::description::{Integrator, Technique};
+use caustica_scene::description::{Integrator, Layer, LayerKind, Technique};
 
 use super::class::Class;
 use super::context::Context;
 use super::fields::Fields;
+use crate::suggest::shorten;
 
 /// What a scene that names none is rendered by.
 pub(super) const USUAL: Integrator = Integrator::Path(Technique::Mis);
@@ -46,18 +47,24 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     let plugin = fields.plugin();
     if WRAPPERS.contains(&plugin) {
         let inner = fields.children(Class::Integrator);
-        let channels = if plugin == "aov" { fields.string("aovs")?.map(|(text, _)| text) } else { None };
+        let is_aov = plugin == "aov";
+        if is_aov {
+            layers(&mut fields, cx)?;
+        }
         if let Some((_, first)) = inner.first() {
             for (other, _) in &inner[1..] {
                 fields.warn_at("only the first of the integrators is rendered", &other.origin);
             }
-            fields.warn(format!("the {} is not supported; what is inside of it is rendered", fields.title()));
+            if !is_aov {
+                let title = fields.title();
+                fields.warn(format!("the {title} is not supported; what is inside of it is rendered"));
+            }
             fields.ignore(&["img"]);
             fields.finish(cx);
             return read(*first, cx);
         }
-        if plugin == "aov" {
-            return channel(fields, channels.unwrap_or_default(), cx);
+        if is_aov {
+            return layers_alone(fields, cx);
         }
     }
     cx.description.integrator = match plugin {
@@ -93,21 +100,40 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// `aov` alone: the first of its channels that there is an integrator for.
-fn channel(mut fields: Fields, channels: &str, cx: &mut Context) -> Result<(), Diagnostic> {
-    let kinds = channels.split(',').filter_map(|c| Some(c.split_once(':')?.1.trim()));
-    let known = |kind: &str| match kind {
-        "depth" => Some(Integrator::Depth),
-        "sh_normal" => Some(Integrator::Normals),
+/// The list of `aov`: `NAME:TYPE`, between commas.
+fn layers(fields: &mut Fields, cx: &mut Context) -> Result<(), Diagnostic> {
+    let Some((list, property)) = fields.string("aovs")? else { return Ok(()) };
+    for entry in list.split(',').map(str::trim).filter(|e| !e.is_empty()) {
+        let read = match entry.contains(':') {
+            true => entry.parse::<Layer>(),
+            false => Err(format!("`{}` is not NAME:TYPE", shorten(entry))),
+        };
+        match read {
+            Ok(layer) if cx.layers.iter().any(|other| other.collides(&layer)) => {
+                let message = format!("two layers are called `{}`; the first is written", layer.name);
+                fields.warn_at(message, &property.value_origin);
+            }
+            // As in Mitsuba's images, whose upper edge is at v = 0.
+            Ok(layer) => cx.layers.push(Layer { v_down: true, ..layer }),
+            Err(why) => fields.warn_at(format!("{why}; it is left out"), &property.value_origin),
+        }
+    }
+    Ok(())
+}
+
+/// `aov` with no integrator inside: the picture shows one of its layers.
+fn layers_alone(mut fields: Fields, cx: &mut Context) -> Result<(), Diagnostic> {
+    let shown = |layer: &Layer| match layer.kind {
+        LayerKind::Depth => Some((Integrator::Depth, "the depth")),
+        LayerKind::ShadingNormal => Some((Integrator::Normals, "the magnitude of the shading normal")),
         _ => None,
     };
-    let Some((kind, integrator)) = kinds.into_iter().find_map(|k| Some((k, known(k)?))) else {
-        let error =
-            fields.error("the integrator `aov` has no integrator inside and no channel that can be shown");
-        return Err(error.hint("`depth` and `sh_normal` can be shown, or what an integrator inside renders"));
-    };
-    let what = if kind == "depth" { "`depth`" } else { "the magnitude of `sh_normal`" };
-    fields.warn(format!("of the channels of `aov`, {what} alone is shown"));
+    if cx.layers.is_empty() {
+        let error = fields.error("the integrator `aov` has no integrator inside and no layer that is known");
+        return Err(error.hint("put an integrator inside, such as `path`, or name layers by `aovs`"));
+    }
+    let (integrator, what) = cx.layers.iter().find_map(shown).unwrap_or((Integrator::Depth, "the depth"));
+    fields.warn(format!("there is no integrator inside of `aov`: the picture shows {what}"));
     cx.description.integrator = integrator;
     fields.finish(cx);
     Ok(())

@@ -87,8 +87,9 @@ pub(crate) fn read(
     let mut context = Context::new(&tree, paths, warnings);
     scene::read(root, &mut context)?;
     let (max_depth, roulette_start) = (context.max_depth, context.roulette_start);
+    let layers = std::mem::take(&mut context.layers);
     let (scene, warnings) = context.finish();
-    Ok(Loaded { scene: Some(scene), tests: Vec::new(), warnings, max_depth, roulette_start })
+    Ok(Loaded { scene: Some(scene), tests: Vec::new(), warnings, max_depth, roulette_start, layers })
 }
 
 #[cfg(test)]

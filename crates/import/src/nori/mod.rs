@@ -48,5 +48,12 @@ pub(crate) fn read(source: &Source, folder: Folder<'_>) -> Result<Loaded, Diagno
             return Err(place.error(message, object.range));
         }
     };
-    Ok(Loaded { scene, tests, warnings: warnings.into_vec(), max_depth: None, roulette_start: None })
+    Ok(Loaded {
+        scene,
+        tests,
+        warnings: warnings.into_vec(),
+        max_depth: None,
+        roulette_start: None,
+        layers: Vec::new(),
+    })
 }

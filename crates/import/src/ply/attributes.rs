@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use caustica_math::Rgb;
 use caustica_scene::description::{Attribute, Domain, Mesh};
 
-use super::header::{Element, Header, Kind};
+use super::header::{Element, Kind};
 
 /// How the parts of an attribute end, and what its name ends with.
 const ENDINGS: [([&str; 3], &str); 4] =
@@ -99,18 +99,4 @@ impl Columns {
     pub(super) fn finish(self) -> Attribute {
         self.attribute
     }
-}
-
-/// The most bytes of a file's attributes, given the size of its tables.
-pub(super) fn bytes(header: &Header, size: u64) -> u64 {
-    let of = |e: &Element| {
-        let domain = if e.name == "face" { Domain::Face } else { Domain::Vertex };
-        let rows = e.count.min(size / e.properties.len().max(1) as u64);
-        // A face has two triangles, for the most part.
-        let each = if domain == Domain::Face { 2 } else { 1 } * size_of::<Rgb>() as u64;
-        let found = find(e, (domain, &Mesh::default()), super::body::is_usual).len() as u64;
-        found.saturating_mul(rows).saturating_mul(each)
-    };
-    let elements = header.elements.iter().filter(|e| ["vertex", "face"].contains(&e.name.as_str()));
-    elements.map(of).fold(0, u64::saturating_add)
 }

@@ -5,6 +5,7 @@ use caustica_scene::description::{Domain, Mesh};
 
 use super::attributes::{self, Columns};
 use super::header::{Element, Encoding, Header, Kind, Property};
+use super::sizes::Sizes;
 use super::{Fault, fault};
 use crate::obj::triangulate::triangulate;
 use crate::suggest::shorten;
@@ -13,15 +14,19 @@ use crate::suggest::shorten;
 const MOST_CORNERS: u64 = 1 << 16;
 
 /// Numbers one after another.
-struct Numbers<'b> {
-    rest: &'b [u8],
-    encoding: Encoding,
+pub(super) struct Numbers<'b> {
+    pub(super) rest: &'b [u8],
+    pub(super) encoding: Encoding,
     /// The line, in a text.
     line: u32,
 }
 
 impl<'b> Numbers<'b> {
-    fn take(&mut self, size: usize) -> Result<&'b [u8], Fault> {
+    pub(super) fn new(header: &Header, body: &'b [u8]) -> Self {
+        Self { rest: body, encoding: header.encoding, line: header.lines + 1 }
+    }
+
+    pub(super) fn take(&mut self, size: usize) -> Result<&'b [u8], Fault> {
         match self.rest.split_at_checked(size) {
             Some((head, rest)) => {
                 self.rest = rest;
@@ -60,7 +65,8 @@ impl<'b> Numbers<'b> {
         })
     }
 
-    fn word(&mut self) -> Result<f64, Fault> {
+    /// The next word of a text.
+    fn text(&mut self) -> Result<&'b [u8], Fault> {
         let space = self.rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(self.rest.len());
         self.line += self.rest[..space].iter().filter(|b| **b == b'\n').count() as u32;
         self.rest = &self.rest[space..];
@@ -68,7 +74,11 @@ impl<'b> Numbers<'b> {
         if end == 0 {
             return self.ended();
         }
-        let text = String::from_utf8_lossy(self.take(end)?);
+        self.take(end)
+    }
+
+    fn word(&mut self) -> Result<f64, Fault> {
+        let text = String::from_utf8_lossy(self.text()?);
         match text.parse() {
             Ok(number) => Ok(number),
             Err(_) => fault(format!("`{}` is not a number", shorten(&text)), self.line),
@@ -84,33 +94,38 @@ impl<'b> Numbers<'b> {
         fault(format!("a list of {length} items is too long"), self.line)
     }
 
-    /// How many rows of an element there may be at most.
-    fn rows(&self, element: &Element) -> usize {
-        element.count.min((self.rest.len() / element.properties.len().max(1)) as u64) as usize
-    }
-
-    fn skip(&mut self, property: &Property) -> Result<(), Fault> {
+    /// Passes a property, and tells how many numbers it has.
+    pub(super) fn skip(&mut self, property: &Property) -> Result<u64, Fault> {
         let count = property.list.map_or(Ok(1), |kind| self.length(kind))?;
-        (0..count).try_for_each(|_| self.next(property.kind).map(|_| ()))
+        match self.encoding {
+            Encoding::Text => (0..count).try_for_each(|_| self.text().map(drop))?,
+            _ => drop(self.take(count as usize * property.kind.size())?),
+        }
+        Ok(count)
     }
 }
 
+/// Whether a property of a face is its list of corners.
+pub(super) fn is_corners(p: &Property) -> bool {
+    p.list.is_some() && ["vertex_indices", "vertex_index"].contains(&p.name.as_str())
+}
+
 /// The mesh, and how many faces of it were left out.
-pub(super) fn read(header: &Header, body: &[u8]) -> Result<(Mesh, usize), Fault> {
-    let mut numbers = Numbers { rest: body, encoding: header.encoding, line: header.lines + 1 };
+pub(super) fn read(header: &Header, body: &[u8], sizes: Sizes) -> Result<(Mesh, usize), Fault> {
+    let mut numbers = Numbers::new(header, body);
     let mut mesh = Mesh::default();
     let mut left_out = 0;
     for element in &header.elements {
         match element.name.as_str() {
-            "vertex" => vertices(element, &mut numbers, &mut mesh)?,
-            "face" => left_out += faces(element, &mut numbers, &mut mesh)?,
+            "vertex" => vertices(element, &mut numbers, (&mut mesh, sizes))?,
+            "face" => left_out += faces(element, &mut numbers, (&mut mesh, sizes))?,
             _ => {
                 for _ in 0..element.count {
                     // Rows without anything in them do not shorten the file.
                     if element.properties.is_empty() {
                         break;
                     }
-                    element.properties.iter().try_for_each(|p| numbers.skip(p))?;
+                    element.properties.iter().try_for_each(|p| numbers.skip(p).map(drop))?;
                 }
             }
         }
@@ -141,27 +156,40 @@ pub(super) fn is_usual(name: &str) -> bool {
     slot(name).is_some()
 }
 
-fn vertices(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<(), Fault> {
+/// Whether the vertices have the coordinates of these slots.
+fn has(element: &Element, mut slots: std::ops::Range<usize>) -> bool {
+    slots.all(|wanted| element.properties.iter().any(|p| slot(&p.name) == Some(wanted)))
+}
+
+/// Whether the vertices have normals, and texture coordinates.
+pub(super) fn parts(element: &Element) -> [bool; 2] {
+    [has(element, 3..6), has(element, 6..8)]
+}
+
+fn vertices(
+    element: &Element,
+    numbers: &mut Numbers,
+    (mesh, sizes): (&mut Mesh, Sizes),
+) -> Result<(), Fault> {
     let mut columns = attributes::find(element, (Domain::Vertex, mesh), is_usual);
     let slots: Vec<Option<usize>> = element.properties.iter().map(|p| slot(&p.name)).collect();
-    let has = |wanted: std::ops::Range<usize>| wanted.into_iter().all(|slot| slots.contains(&Some(slot)));
-    if !has(0..3) {
+    if !has(element, 0..3) {
         return fault("the vertices have no x, y and z", 1);
     }
     if element.count > u64::from(u32::MAX) {
         return fault("the mesh has too many vertices", 1);
     }
-    // A file of a few bytes may claim any number; what it has is seen as it is read.
-    let likely = element.count.min(numbers.rest.len() as u64 / 3) as usize;
-    mesh.positions.reserve_exact(likely);
-    let (has_normals, has_uvs) = (has(3..6), has(6..8));
-    columns.iter_mut().for_each(|c| c.reserve(numbers.rows(element)));
+    let [has_normals, has_uvs] = parts(element);
+    mesh.positions.reserve_exact(sizes.vertices);
+    mesh.normals.reserve_exact(if has_normals { sizes.vertices } else { 0 });
+    mesh.uvs.reserve_exact(if has_uvs { sizes.vertices } else { 0 });
+    columns.iter_mut().for_each(|c| c.reserve(sizes.vertices));
     let mut others = vec![0.0_f32; element.properties.len()];
     for _ in 0..element.count {
         let mut values = [0.0_f32; 8];
         for ((property, slot), other) in element.properties.iter().zip(&slots).zip(&mut others) {
             match slot {
-                _ if property.list.is_some() => numbers.skip(property)?,
+                _ if property.list.is_some() => drop(numbers.skip(property)?),
                 Some(slot) => values[*slot] = numbers.next(property.kind)? as f32,
                 None => *other = numbers.next(property.kind)? as f32,
             }
@@ -183,16 +211,17 @@ fn vertices(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result
     Ok(())
 }
 
-fn faces(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<usize, Fault> {
-    let is_corners =
-        |p: &Property| p.list.is_some() && ["vertex_indices", "vertex_index"].contains(&p.name.as_str());
+fn faces(
+    element: &Element,
+    numbers: &mut Numbers,
+    (mesh, sizes): (&mut Mesh, Sizes),
+) -> Result<usize, Fault> {
     if !element.properties.iter().any(is_corners) {
         return fault("the faces have no list `vertex_indices`", 1);
     }
-    let likely = element.count.min(numbers.rest.len() as u64 / 4) as usize;
-    mesh.triangles.reserve_exact(likely);
+    mesh.triangles.reserve_exact(sizes.triangles);
     let mut columns = attributes::find(element, (Domain::Face, mesh), |_| false);
-    columns.iter_mut().for_each(|c| c.reserve(numbers.rows(element)));
+    columns.iter_mut().for_each(|c| c.reserve(sizes.triangles));
     let mut values = vec![0.0_f32; element.properties.len()];
     let mut corners: Vec<u32> = Vec::new();
     let mut left_out = 0;
@@ -212,7 +241,7 @@ fn faces(element: &Element, numbers: &mut Numbers, mesh: &mut Mesh) -> Result<us
                     left_out += usize::from(!add_face(&corners, mesh, numbers.line)?);
                 }
                 None => *value = numbers.next(property.kind)? as f32,
-                Some(_) => numbers.skip(property)?,
+                Some(_) => drop(numbers.skip(property)?),
             }
         }
         columns.iter_mut().for_each(|c| c.push(&values, mesh.triangles.len() - before));

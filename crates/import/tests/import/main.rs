@@ -11,6 +11,7 @@ mod mitsuba_plugins;
 mod mitsuba_robustness;
 mod mitsuba_sensors;
 mod mitsuba_shapes;
+mod mitsuba_sunsky;
 mod mitsuba_syntax;
 mod obj;
 mod plugin_errors;

@@ -109,6 +109,74 @@ fn meshes() {
     assert_eq!(e.origin.map(|o| o.line), Some(1 << 14));
 }
 
+/// A fan of `n` corners around the first, in binary with indices of one or two bytes.
+fn fan(n: u32, faces: u32, index: &str) -> Vec<u8> {
+    let count = if n > 255 { "ushort" } else { "uchar" };
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {n}\nproperty float x\nproperty float y\n\
+         property float z\nelement face {faces}\nproperty list {count} {index} vertex_indices\nend_header\n"
+    )
+    .into_bytes();
+    for i in 0..n {
+        // Of a circle, roughly: corners of a convex outline.
+        let t = i as f32 / n as f32 - 0.5;
+        [t, t * t, 0.0_f32].iter().for_each(|c| bytes.extend(c.to_le_bytes()));
+    }
+    let number = |kind: &str, value: u32| match kind {
+        "uchar" => vec![value as u8],
+        _ => (value as u16).to_le_bytes().to_vec(),
+    };
+    for _ in 0..faces {
+        bytes.extend(number(count, n));
+        (0..n).for_each(|i| bytes.extend(number(index, i)));
+    }
+    bytes
+}
+
+/// Short indices and large faces make meshes of many times the file: what is needed is told from the lists' lengths.
+#[test]
+fn meshes_that_grow() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = |name: &str| {
+        let shape = format!("<shape type='ply'><string name='filename' value='{name}'/></shape>");
+        write(&folder, "s.xml", format!("<scene version='3.0.0'><sensor type='perspective'/>{shape}</scene>"))
+    };
+    // By (corners, faces, the type of indices): bytes of the mesh for one of the file.
+    let cases = [
+        (3, 200_000, "uchar", 3.0),
+        (4, 200_000, "uchar", 4.8),
+        (200, 4000, "uchar", 11.8),
+        (300, 300, "ushort", 5.9),
+    ];
+    for (corners, faces, index, growth) in cases {
+        let bytes = fan(corners, faces, index);
+        let mesh = 12 * u64::from(faces) * u64::from(corners - 2) + 12 * u64::from(corners);
+        let found = mesh as f64 / bytes.len() as f64;
+        assert!((found / growth - 1.0).abs() < 0.05, "{found}");
+        // The file, its mesh, and a copy of that.
+        let needed = 2 * mesh + bytes.len() as u64;
+        write(&folder, "fan.ply", &bytes);
+        load_within(&scene("fan.ply"), MemoryLimit::Bytes(needed)).unwrap();
+        let e = load_within(&scene("fan.ply"), MemoryLimit::Bytes(needed - 1)).unwrap_err();
+        is_shortage(&e, &format!("fan.ply` needs {} MB of memory", needed.div_ceil(MEGABYTE)));
+        assert!(e.hint.is_some());
+    }
+    // Text, with attributes, normals and texture coordinates; and tables that it does not need.
+    let text = "ply\nformat ascii 1.0\nelement other 2\nproperty list uchar int a\nproperty float b\n\
+        element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n\
+        property float nz\nproperty float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty float heat_r\nend_header\n\
+        2 7 7 1\n0 1\n0 0 0 0 0 1 0 0 1 1 1\n1 0 0 0 0 1 0 0 1 1 1\n1 1 0 0 0 1 0 0 1 1 1\n0 1 0 0 0 1 0 0 1 1 1\n\
+        4 0 1 2 3 0.5\n3 0 1 2 0.25\n";
+    write(&folder, "all.ply", text);
+    let needed = 2 * (4 * (12 + 12 + 8 + 12) + 3 * (12 + 12)) + text.len() as u64;
+    load_within(&scene("all.ply"), MemoryLimit::Bytes(needed)).unwrap();
+    is_shortage(
+        &load_within(&scene("all.ply"), MemoryLimit::Bytes(needed - 1)).unwrap_err(),
+        "all.ply` needs",
+    );
+}
+
 /// Scenes hand the limit on to what they name, and every copy of a mesh counts.
 #[test]
 fn scenes() {

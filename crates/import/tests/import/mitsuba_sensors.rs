@@ -2,7 +2,7 @@
 
 use crate::common::{good, parse, refused, warned};
 use caustica_math::{Filter, Vec3};
-use caustica_scene::description::{CameraKind, Integrator, Technique};
+use caustica_scene::description::{CameraKind, Integrator, LayerKind, Technique};
 use caustica_scene::{Description, Scene};
 
 fn sensor(plugin: &str, inner: &str) -> String {
@@ -134,13 +134,27 @@ fn channels_of_aov() {
     let aov = |channels: &str, inner: &str| {
         by(&format!("<integrator type='§aov'><string name='aovs' value='{channels}'/>{inner}</integrator>"))
     };
-    let shown = |channels: &str| warned(&aov(channels, ""), "alone is shown").integrator;
+    let shown = |channels: &str| warned(&aov(channels, ""), "the picture shows").integrator;
     assert_eq!(shown("dd.y:depth,nn:sh_normal"), Integrator::Depth);
     assert_eq!(shown("uv:uv, nn:sh_normal"), Integrator::Normals);
-    let inside = warned(&aov("dd.y:depth", "<integrator type='direct'/>"), "what is inside of it");
-    assert_eq!(inside.integrator, Integrator::Direct(Technique::Mis));
-    let text = aov("uv:uv", "").replace('§', "").replace("<integrator", "§<integrator");
-    refused(&text, "no channel that can be shown");
+    assert_eq!(shown("uv:uv"), Integrator::Depth);
+    let text = aov("", "").replace('§', "").replace("<integrator", "§<integrator");
+    refused(&text, "no layer that is known");
+    // Around an integrator there is nothing to warn of, but for what is unknown.
+    let around = |list: &str| {
+        let list = format!("<string name='aovs' value={list}/><integrator type='direct'/>");
+        by(&format!("<integrator type='aov'>{list}</integrator>"))
+    };
+    let loaded = parse(&around("'dd.y:depth, nn:sh_normal,uv:uv'")).unwrap();
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    assert_eq!(loaded.scene.unwrap().integrator, Integrator::Direct(Technique::Mis));
+    let layers: Vec<_> = loaded.layers.iter().map(|l| (l.name.as_str(), l.kind, l.v_down)).collect();
+    let expected = [("dd.y", LayerKind::Depth), ("nn", LayerKind::ShadingNormal), ("uv", LayerKind::Uv)];
+    assert_eq!(layers, expected.map(|(name, kind)| (name, kind, true)));
+    warned(&around("'§a:depth,b:boundary_test'"), "no layer `boundary_test`");
+    warned(&around("'§a:depth,b:albedo,a:depth'"), "two layers are called `a`");
+    warned(&around("'§depth'"), "`depth` is not NAME:TYPE");
+    warned(&around("'§eye:depth'"), "is there already");
 }
 
 #[test]

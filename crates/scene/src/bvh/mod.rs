@@ -12,7 +12,7 @@ mod avx512;
 mod build;
 mod instance;
 mod lanes;
-mod pages;
+pub(crate) mod pages;
 mod ray;
 mod sphere;
 mod traverse;

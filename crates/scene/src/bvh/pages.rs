@@ -9,7 +9,7 @@ use memmap2::MmapMut;
 
 /// A table of fixed length. A large one lies in pages of the largest size that the system gives: of small ones
 /// there are more than a CPU remembers the places of, and every ray would have to look them up again.
-pub(super) enum Pages<T> {
+pub(crate) enum Pages<T> {
     Small(Vec<T>),
     Large(MmapMut, usize),
 }
@@ -21,7 +21,7 @@ const PAGE: usize = 2 << 20;
 
 impl<T: Pod> Pages<T> {
     /// A table of zeros.
-    pub(super) fn zeroed(len: usize) -> Self {
+    pub(crate) fn zeroed(len: usize) -> Self {
         let bytes = len * size_of::<T>();
         if bytes >= LARGE
             && let Ok(map) = MmapMut::map_anon(bytes.next_multiple_of(PAGE))

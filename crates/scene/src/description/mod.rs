@@ -15,6 +15,7 @@ mod attribute;
 mod camera;
 mod instance;
 mod integrator;
+mod layer;
 mod light;
 mod material;
 mod principled;
@@ -29,6 +30,7 @@ pub use camera::{Camera, CameraKind, Crop, FilmSettings};
 pub use caustica_math::Filter;
 pub use instance::{Group, GroupId, Instance};
 pub use integrator::{Integrator, Technique};
+pub use layer::{Layer, LayerKind};
 pub use light::{Daylight, EnvironmentRows, Light, LightKind};
 pub use material::{
     Image, ImageId, Material, MaterialId, MaterialKind, PixelLookup, Texture, TextureTransform, Wrap,

@@ -142,7 +142,7 @@ impl Surfaces {
 
 /// The weights of a triangle's corners at a point of it, none negative, by the areas across from them. Positions are
 /// rounded, so that they may lie a little outside.
-fn barycentrics([a, b, c]: [Vec3; 3], p: Vec3) -> [f32; 3] {
+pub(super) fn barycentrics([a, b, c]: [Vec3; 3], p: Vec3) -> [f32; 3] {
     let normal = cross(between(a, b), between(a, c));
     let opposite = |q: Vec3, r: Vec3| dot(cross(between(p, q), between(p, r)), normal).max(0.0);
     let areas = [opposite(b, c), opposite(c, a), opposite(a, b)];

@@ -72,6 +72,7 @@ impl Surfaces {
         FlatShape {
             material: shape.material.0,
             light: None,
+            is_collimated: false,
             first_primitive: self.triangles.len() as u32,
             primitive_count: 0,
             needs_uv: true,

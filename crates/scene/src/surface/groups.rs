@@ -97,12 +97,19 @@ impl Surfaces {
         point
     }
 
-    /// ∂p/∂u and ∂p/∂v at a point in an instance, in the world.
-    pub(super) fn derivatives_inside(&self, point: &SurfacePoint) -> Option<[Vec3; 2]> {
+    /// A point in an instance as one of its group, with the group's surfaces.
+    pub(super) fn inside_of(&self, point: &SurfacePoint) -> Option<(&Self, SurfacePoint)> {
         let place = &self.instances[point.instance as usize];
         let surfaces = &self.groups[place.group as usize].surfaces;
         let normal = place.to_world.normal_back(point.normal).try_normalized()?;
-        let inside = SurfacePoint { instance: Hit::NO_INSTANCE, normal, ..*point };
+        let position = place.to_group.point(point.position);
+        Some((surfaces, SurfacePoint { instance: Hit::NO_INSTANCE, normal, position, ..*point }))
+    }
+
+    /// ∂p/∂u and ∂p/∂v at a point in an instance, in the world.
+    pub(super) fn derivatives_inside(&self, point: &SurfacePoint) -> Option<[Vec3; 2]> {
+        let place = &self.instances[point.instance as usize];
+        let (surfaces, inside) = self.inside_of(point)?;
         let derivatives = surfaces.derivatives(&inside)?.map(|d| place.to_world.vector(d));
         derivatives.iter().all(|d| d.is_finite()).then_some(derivatives)
     }

@@ -6,9 +6,31 @@ use caustica_math::{Frame, Vec2, Vec3};
 
 use crate::bvh::Hit;
 
+use super::attributes::barycentrics;
 use super::{FlatSphere, NONE, SurfacePoint, Surfaces};
 
 impl Surfaces {
+    /// The texture coordinates at a point, whether or not its material asks for them. `None` where the shape has none.
+    pub fn texture_coordinates(&self, point: &SurfacePoint) -> Option<Vec2> {
+        if point.instance != Hit::NO_INSTANCE {
+            let (surfaces, inside) = self.inside_of(point)?;
+            return surfaces.texture_coordinates(&inside);
+        }
+        if let Some(sphere) = (point.primitive as usize).checked_sub(self.triangles.len()) {
+            return Some(self.spheres[sphere].uv(point.normal));
+        }
+        let weights = barycentrics(self.corners(point.primitive), point.position);
+        let [a, b, c] = self.corner_uvs(point.primitive)?;
+        Some(a * weights[0] + b * weights[1] + c * weights[2])
+    }
+
+    /// The texture coordinates of a triangle's corners, if it has any.
+    fn corner_uvs(&self, primitive: u32) -> Option<[Vec2; 3]> {
+        let flat = &self.shapes[self.triangle_shapes[primitive as usize] as usize];
+        let uv = |v: u32| self.uvs[(v - flat.first_position + flat.first_uv) as usize];
+        (flat.first_uv != NONE).then(|| self.triangles[primitive as usize].map(uv))
+    }
+
     /// ∂p/∂u and ∂p/∂v at a point, in the world. `None` where texture coordinates are missing or say nothing, as at
     /// the poles of a sphere.
     pub fn derivatives(&self, point: &SurfacePoint) -> Option<[Vec3; 2]> {
@@ -24,12 +46,7 @@ impl Surfaces {
     /// The same of a triangle, where they are constant.
     #[inline(never)]
     pub(super) fn triangle_derivatives(&self, primitive: u32, &[a, b, c]: &[Vec3; 3]) -> Option<[Vec3; 2]> {
-        let flat = &self.shapes[self.triangle_shapes[primitive as usize] as usize];
-        if flat.first_uv == NONE {
-            return None;
-        }
-        let uvs = self.triangles[primitive as usize]
-            .map(|v| self.uvs[(v - flat.first_position + flat.first_uv) as usize]);
+        let uvs = self.corner_uvs(primitive)?;
         let (s, t) = (uvs[1] - uvs[0], uvs[2] - uvs[0]);
         let inverse = 1.0 / (s.x * t.y - s.y * t.x);
         let (p, q) = (b - a, c - a);

@@ -2,7 +2,7 @@
 
 use caustica_math::{Rgb, Vec3};
 use caustica_scene::bvh::TreeQuality;
-use caustica_scene::description::{Daylight, Geometry, Image, LightKind, Mesh};
+use caustica_scene::description::{CameraKind, Daylight, Geometry, Image, LightKind, Mesh};
 use caustica_scene::memory::needed;
 use caustica_scene::{Cause, Description, MemoryLimit, Scene};
 use caustica_testkit::build;
@@ -46,6 +46,20 @@ fn what_is_needed_decides() {
     );
     assert_eq!(within(&d, bytes - 1), Err(expected));
     assert!(needed(&d, TreeQuality::Spatial) > bytes);
+}
+
+/// A meter has a table of the triangles that it stands on: what it needs is what is left to it, to the byte.
+#[test]
+fn meters_need_more() {
+    let plain = scene(20_000);
+    let mut d = plain.clone();
+    d.camera.kind = CameraKind::IrradianceMeter { shape: 0 };
+    (d.film.width, d.film.height) = (1, 1);
+    let [before, bytes] = [&plain, &d].map(|d| needed(d, TreeQuality::Fast));
+    // Corners, a normal and a distance, and the choice.
+    assert!((20_000 * 56..20_000 * 100).contains(&(bytes - before)), "{} more", bytes - before);
+    within(&d, bytes).unwrap();
+    assert!(within(&d, before).unwrap_err().contains("the scene needs"));
 }
 
 /// Glass is looked at for gaps, lamps and environments have tables.

@@ -3,8 +3,8 @@
 use caustica_math::{Rgb, Transform, Vec2, Vec3};
 use caustica_scene::Description;
 use caustica_scene::description::{
-    BumpRule, Distribution, Geometry, ImageId, MaterialId, MaterialKind, Mesh, Principled, PrincipledThin,
-    Roughness, Scalar, Shadowing, Texture, TextureTransform, Wrapper,
+    Attribute, BumpRule, Distribution, Domain, Geometry, ImageId, Light, LightKind, MaterialId, MaterialKind,
+    Mesh, Principled, PrincipledThin, Roughness, Scalar, Shadowing, Texture, TextureTransform, Wrapper,
 };
 
 use super::choices::Choices;
@@ -37,6 +37,40 @@ pub fn shape(d: &mut Description, scale: f32, choices: &mut Choices) {
     if choices.once_in(2) {
         d.shapes[index].emission = Some(texture(true, choices));
     }
+    if choices.once_in(3) {
+        colours(d, index, choices);
+    }
+}
+
+/// Gives a mesh colours of its own, which its material and, now and then, its emission look up.
+fn colours(d: &mut Description, index: usize, choices: &mut Choices) {
+    let Geometry::Mesh(mesh) = &mut d.shapes[index].geometry else { return };
+    let (domain, count) = match choices.once_in(2) {
+        true => (Domain::Face, mesh.triangles.len()),
+        false => (Domain::Vertex, mesh.positions.len()),
+    };
+    let palette: Vec<Rgb> = (0..4).map(|_| choices.albedo()).collect();
+    let values = palette.iter().copied().cycle().take(count).collect();
+    let name = "vertex_color".to_owned();
+    mesh.attributes = vec![Attribute { name: name.clone(), domain, values }];
+    let attribute = d.add_attribute(&name);
+    let colour = Texture::Attribute { attribute, scale: choices.unit() };
+    d.shapes[index].material = d.add_material(MaterialKind::Diffuse { albedo: colour });
+    if d.shapes[index].emission.is_some() && choices.once_in(2) {
+        let scale = choices.light().max_channel();
+        d.shapes[index].emission = Some(Texture::Attribute { attribute, scale });
+    }
+}
+
+/// A lamp that emits along the normals of one of the shapes that are none yet.
+pub fn collimated(d: &Description, choices: &mut Choices) -> Option<LightKind> {
+    let taken = |i: usize| {
+        let thrown = |l: &Light| matches!(l.kind, LightKind::Collimated { shape, .. } if shape as usize == i);
+        d.shapes[i].emission.is_some() || d.lights.iter().any(thrown)
+    };
+    let free: Vec<usize> = (0..d.shapes.len()).filter(|i| !taken(*i)).collect();
+    let shape = *free.get(choices.below(free.len()))? as u32;
+    Some(LightKind::Collimated { shape, exitance: texture(true, choices) })
 }
 
 /// Shows the last shape that is no lamp as one to three instances.
@@ -237,7 +271,7 @@ fn principled_thin(choices: &mut Choices, eta: f32) -> MaterialKind {
 }
 
 /// A texture of light or of reflectance.
-fn texture(of_light: bool, choices: &mut Choices) -> Texture {
+pub fn texture(of_light: bool, choices: &mut Choices) -> Texture {
     let colour = |choices: &mut Choices| if of_light { choices.light() } else { choices.albedo() };
     match choices.below(4) {
         0 | 1 => colour(choices).into(),

@@ -5,6 +5,7 @@ use caustica_math::Vec3;
 use super::cone::Cone;
 use super::node::{Branch, Link, Node, WIDTH};
 use super::{DEEPEST, Leaf, LightTree, sphere};
+use crate::bvh::pages::Pages;
 
 /// What becomes a leaf.
 #[derive(Clone, Copy, Debug)]
@@ -116,7 +117,9 @@ impl LightTree {
         };
         let (whole, ..) = builder.node(&mut items, 0, 0);
         drop(items);
-        let Builder { nodes, leaves, trails } = builder;
+        let Builder { nodes: built, leaves, trails } = builder;
+        let mut nodes = Pages::zeroed(built.len());
+        nodes.copy_from_slice(&built);
         let mut order = vec![0; n];
         for (index, leaf) in leaves.iter().enumerate() {
             order[(first[leaf.light as usize] + leaf.part) as usize] = index as u32;
@@ -232,17 +235,22 @@ fn best_cut(items: &[Item], low: Vec3, size: Vec3) -> Option<(usize, usize)> {
     }
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in axes {
-        let mut above = [0.0; BINS];
+        // Most groups are small: a cut beside an empty bin is as good as the one before.
+        let occupied = |i: &usize| bins[axis][*i].count > 0;
+        let (mut above, mut cost_above) = ([f64::INFINITY; BINS], f64::INFINITY);
         let mut sum = Bin::NONE;
         for i in (1..BINS).rev() {
-            sum = sum.and(bins[axis][i]);
-            above[i - 1] = if sum.count == 0 { f64::INFINITY } else { sum.cost() };
+            if occupied(&i) {
+                sum = sum.and(bins[axis][i]);
+                cost_above = sum.cost();
+            }
+            above[i - 1] = cost_above;
         }
         let mut below = Bin::NONE;
-        for (i, above) in above.iter().enumerate().take(BINS - 1) {
+        for i in (0..BINS - 1).filter(occupied) {
             below = below.and(bins[axis][i]);
-            let cost = below.cost() + above;
-            if below.count > 0 && cost < best.map_or(f64::INFINITY, |b| b.0) {
+            let cost = below.cost() + above[i];
+            if cost < best.map_or(f64::INFINITY, |b| b.0) {
                 best = Some((cost, axis, i));
             }
         }

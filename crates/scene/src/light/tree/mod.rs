@@ -12,6 +12,7 @@ mod node;
 use caustica_math::{Mass, ONE_BELOW, Vec3};
 
 use super::Receiver;
+use crate::bvh::pages::Pages;
 use node::{Link, Node, WIDTH};
 
 pub use build::Item;
@@ -30,7 +31,7 @@ pub struct Leaf {
 #[derive(Debug)]
 pub struct LightTree {
     /// The first is the root.
-    nodes: Vec<Node>,
+    nodes: Pages<Node>,
     leaves: Vec<Leaf>,
     /// The way to each leaf: the branches that are taken, two bits for each depth.
     trails: Vec<u64>,

@@ -1,3 +1,4 @@
+use bytemuck::{Pod, Zeroable};
 use caustica_math::Vec3;
 use caustica_math::elementary::cos;
 use wide::f32x4;
@@ -31,7 +32,8 @@ pub enum Link {
 }
 
 /// Branches side by side.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
 pub struct Node {
     center: [f32x4; 3],
     radius: f32x4,

@@ -1,10 +1,8 @@
 //! The sky and the sun of Mitsuba's files.
 
-mod common;
-
+use crate::common::{good, refused, warned};
 use caustica_math::{Rgb, Vec3};
 use caustica_scene::description::{Daylight, LightKind};
-use common::{good, refused, warned};
 
 /// A scene with that emitter.
 fn scene(inner: &str) -> String {
