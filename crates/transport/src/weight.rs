@@ -162,10 +162,7 @@ pub fn each_density(
     mut tell: impl FnMut(usize, f64),
 ) {
     let k = vertices.len();
-    let joins = |i: usize| match i {
-        0 => !vertices[0].delta,
-        _ => !(i > 1 && vertices[i - 1].delta || i < k && vertices[i].delta),
-    };
+    let joins = |i: usize| !(i > 1 && vertices[i - 1].delta || i < k && vertices[i].delta);
     // What strategy i's density has beside the plain products.
     let special = |i: usize| {
         // A lamp beside others that are brighter by more than an `f32` can tell is never chosen, by either.

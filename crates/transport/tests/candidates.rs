@@ -73,6 +73,7 @@ impl Sums {
 
 impl Sink for Sums {
     const PROBES: bool = true;
+    const WEIGHS_ALL: bool = true;
 
     fn eye(&mut self, value: Rgb) {
         self.compare("delivered", value, self.told);
@@ -87,6 +88,10 @@ impl Sink for Sums {
     }
 
     fn contribution(&mut self, c: &Contribution<'_>) {
+        let sum: f32 = c.weights.iter().sum();
+        if !c.weights.iter().all(|w| (0.0..=1.0).contains(w)) || sum > 1.0 + 1e-5 {
+            self.wrong.push(format!("{}: weights {:?}", c.strategy, c.weights));
+        }
         let value = lanes(c.unweighted).map(|lane| lane * f64::from(c.weight * c.filter_weight));
         if c.strategy.t > 1 {
             self.told = [0, 1, 2].map(|lane| self.told[lane] + value[lane]);
