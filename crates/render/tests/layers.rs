@@ -64,7 +64,7 @@ fn a_wall_is_known_exactly() {
     let scene = Scene::new(ball_and_wall()).unwrap().0;
     let channels = of(&scene, options(64, 2), &all());
     assert_eq!(channels.len(), 3 + 1 + 3 + 2 + 6 + 6 + 4 + 2);
-    let tan = (30.0_f32).to_radians().tan();
+    let tan = 1.0 / 3.0_f32.sqrt();
     // A pixel is so wide on the wall.
     let step = 6.0 * tan * 2.0 / SIDE as f32;
     for pixel in [[1, 2], [0, 15], [3, 9]] {
