@@ -698,6 +698,9 @@ fn parse_layers(text: &str) -> Result<LayerList, String> {
             return Err(format!("two layers are called `{}`", layer.name));
         }
         layers.push(layer);
+        if layers.len() > Layer::MOST {
+            return Err(format!("more than {} layers are not written", Layer::MOST));
+        }
     }
     Ok(LayerList(layers))
 }

@@ -101,12 +101,13 @@ pub fn rescue(
     (provenance, report): (&Provenance, &Report),
 ) -> Failure {
     let path = std::env::temp_dir().join(format!("caustica-{}.film", std::process::id()));
-    match (failure, write_output(&path, session, (provenance, report))) {
-        (Failure::Output(why), Ok(())) => Failure::Output(format!(
+    let Failure::Output(why) = failure else { return failure };
+    match write_output(&path, session, (provenance, report)) {
+        Ok(()) => Failure::Output(format!(
             "{why}; the film is saved as `{}`: go on with it by `--checkpoint` and `--resume`, or make a picture of it \
              by `caustica develop`",
             path.display()
         )),
-        (failure, _) => failure,
+        Err(_) => Failure::Output(why),
     }
 }

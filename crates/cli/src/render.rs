@@ -2,7 +2,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use caustica::description::{Integrator, Layer};
-use caustica::film::{FilmFacts, Provenance, write_exr, write_png};
+use caustica::film::{Channel, FilmFacts, Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::scene::camera::Joins;
 use caustica::session::{Stages, content_hash, integrator_by_name, integrator_name, provenance};
@@ -48,7 +48,7 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
         return replay::run(&scene, settings, sample, console);
     }
     let outputs = Outputs::new(args)?;
-    if let (Outputs::Film(_), Some(_)) = (&outputs, &args.layers) {
+    if matches!((&outputs, &args.layers), (Outputs::Film(_), Some(list)) if !list.0.is_empty()) {
         return Err(Failure::Usage(NO_LAYERS.into()));
     }
     let of = provenance(&args.source.name(), &hash, &settings);
@@ -57,7 +57,9 @@ pub fn run(args: &Render, console: &mut Console) -> Result<ExitCode, Failure> {
     let wanted =
         u64::from(options.first_sample)..u64::from(options.first_sample) + u64::from(options.samples);
     let session = checkpoint::session(&scene, options, (record.flatten(), &of))?;
-    session.check_layers(&layers)?;
+    if let Outputs::Pictures { .. } = &outputs {
+        session.check_layers(&layers)?;
+    }
     if let (Outputs::Film(path), false) = (&outputs, args.force) {
         let facts = FilmFacts { samples: wanted.into(), ..session.facts(&of, 0.0) };
         check_replaceable(path, (session.film().layout(), &facts))?;
@@ -200,10 +202,15 @@ fn save(
     (args, [exr, png], layers): (&Render, [&Path; 2], &[Layer]),
     interrupts: &Interrupts,
 ) -> Result<LightImage, Failure> {
-    let channels = session.layers(layers)?;
-    let picture = &Picture { channels, ..session.film().develop() };
     let mut metadata = session.metadata(report);
     metadata.set("scene", args.source.name());
+    let plain = session.film().develop();
+    let channels = beside(session, layers, || {
+        let light_image = prompt::light_image(args.light_image, false);
+        write_exr(exr, &plain, light_image, &metadata).map_err(|e| Failure::output(exr, e))?;
+        save_png(png, &plain, light_image, args.look)
+    })?;
+    let picture = &Picture { channels, ..plain };
     let save_exr =
         |light_image| write_exr(exr, picture, light_image, &metadata).map_err(|e| Failure::output(exr, e));
     if args.light_image == LightImageChoice::Ask {
@@ -216,6 +223,20 @@ fn save(
     }
     save_png(png, picture, light_image, args.look)?;
     Ok(light_image)
+}
+
+/// The layers beside a picture. It is kept without them first: they take a while, and may fail.
+fn beside(
+    session: &Session<'_>,
+    layers: &[Layer],
+    keep: impl FnOnce() -> Result<(), Failure>,
+) -> Result<Vec<Channel>, Failure> {
+    if layers.is_empty() {
+        return Ok(Vec::new());
+    }
+    keep()?;
+    let failed = |e| Failure::Output(format!("the picture is written without its layers: {e}"));
+    session.layers(layers).map_err(failed)
 }
 
 /// Writes what a picture looks like.

@@ -24,7 +24,7 @@ impl Session<'_> {
     /// on neither threads nor pauses.
     ///
     /// # Errors
-    /// Channels of one name, layers that do not fit into memory, and if no thread can be started.
+    /// Too many layers, channels of one name, layers that do not fit into memory, and if no thread can be started.
     pub fn layers(&self, layers: &[Layer]) -> Result<Vec<Channel>, RenderError> {
         let names = self.check_layers(layers)?;
         let window = self.film().layout().window;
@@ -60,8 +60,11 @@ impl Session<'_> {
     /// The names of the layers' channels, if they can be made: to be asked before hours of work, not after.
     ///
     /// # Errors
-    /// Channels of one name, and layers that do not fit into memory.
+    /// Too many layers (see [`Layer::MOST`]), channels of one name, and layers that do not fit into memory.
     pub fn check_layers(&self, layers: &[Layer]) -> Result<Vec<String>, RenderError> {
+        if layers.len() > Layer::MOST {
+            return Err(FilmError::Layout(format!("more than {} layers are not written", Layer::MOST)).into());
+        }
         for (i, layer) in layers.iter().enumerate() {
             if layers[..i].iter().any(|other| other.collides(layer)) {
                 let why = format!("two layers are called `{}`", layer.name);

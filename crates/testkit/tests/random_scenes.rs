@@ -70,8 +70,18 @@ fn lamps_and_colours_of_every_kind() {
         }
     }
     println!("{drawn:?}");
-    let kinds =
-        ["Point", "Spot", "LinearSpot", "Projector", "Collimated", "Directional", "Constant", "Environment"];
+    let kinds = [
+        "Point",
+        "Spot",
+        "LinearSpot",
+        "Projector",
+        "Collimated",
+        "Directional",
+        "Constant",
+        "Environment",
+        "Sky",
+        "Sun",
+    ];
     for kind in kinds.into_iter().chain(["colours", "glow"]) {
         assert!(drawn.get(kind).is_some_and(|n| *n >= 10), "{kind}: {drawn:?}");
     }

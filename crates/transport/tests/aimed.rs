@@ -1,5 +1,6 @@
 //! Aimed rays: they leave the picture as it is, and take out noise where nothing else makes a path.
 
+use caustica_math::stats::{Moments, welch_t_test};
 use caustica_math::{Rgb, Vec2};
 use caustica_scene::Description;
 use caustica_scene::description::{CameraKind, LightKind, MaterialKind};
@@ -85,16 +86,19 @@ struct Squares {
     sum: f64,
 }
 
+/// Whether it is found beyond a point that is itself seen in a mirror or in glass.
+fn is_beyond(c: &Contribution<'_>) -> bool {
+    let Some((_, [first, between @ .., last])) = c.path.eye.split_last() else { return false };
+    c.strategy.s == 0 && first.delta && last.delta && between.iter().any(|v| v.is_connectible())
+}
+
 impl Sink for Squares {
     const PROBES: bool = true;
 
     fn eye(&mut self, _: Rgb) {}
     fn splat(&mut self, _: Vec2, _: Rgb) {}
     fn contribution(&mut self, c: &Contribution<'_>) {
-        let Some((_, before)) = c.path.eye.split_last() else { return };
-        let [first, .., last] = before else { return };
-        let between = before.iter().any(|v| v.is_connectible());
-        if c.strategy.s == 0 && first.delta && last.delta && between {
+        if is_beyond(c) {
             self.found += 1;
             self.sum += f64::from(c.unweighted[1] * c.weight).powi(2);
         }
@@ -116,4 +120,44 @@ fn they_take_out_most_of_the_noise() {
         squares
     });
     assert!(two.found > 4 * none.found && two.sum < 0.3 * none.sum);
+}
+
+/// How often the walk finds lamps there, as the weights tell it.
+#[derive(Default)]
+struct Shares(f64);
+
+impl Sink for Shares {
+    const PROBES: bool = true;
+    const WEIGHS_ALL: bool = true;
+
+    fn eye(&mut self, _: Rgb) {}
+    fn splat(&mut self, _: Vec2, _: Rgb) {}
+    fn contribution(&mut self, c: &Contribution<'_>) {
+        if is_beyond(c) {
+            self.0 += f64::from(c.weights[0]);
+        }
+    }
+}
+
+/// The walk's weight is its share in all times that a path is found. So the sum of these weights is the number of paths
+/// that the walk finds, whether or not aimed rays find them more often. (Roulette is in no weight.) By Welch's t-test at
+/// 10⁻³.
+#[test]
+fn the_shares_of_the_walk_add_up_to_what_it_finds() {
+    let scene = flatten(under_a_lamp());
+    let [none, two] = [0, 2].map(|aimed_rays| {
+        let seed = seed(80 + u64::from(aimed_rays));
+        let settings =
+            Settings { aimed_rays, max_depth: Some(9), roulette_start: Some(9), seed, ..Settings::default() };
+        let kernel = Kernel::new(&scene, settings);
+        let (mut scratch, mut found) = (Scratch::default(), Moments::default());
+        for i in 0..400_000u32 {
+            let mut shares = Shares::default();
+            kernel.sample([i % 8, i / 8 % 8], i / 64, &mut scratch, &mut shares);
+            found.push(shares.0);
+        }
+        found
+    });
+    println!("{:.3e} and {:.3e} a sample", none.mean, two.mean);
+    assert!(none.mean > 0.0 && welch_t_test(&none, &two, 0.0) > 1e-3);
 }

@@ -9,6 +9,8 @@ const BUILDS: [(&str, &[&str]); 2] = [("released", &["--release"]), ("tested", &
 
 /// Renders the built-in scene by both; fails unless the pictures are the same to the byte.
 pub fn release() -> Outcome {
+    let folder = root().join("target/nightly");
+    fs::create_dir_all(&folder).map_err(|e| Trouble::Failed(format!("{}: {e}", folder.display())))?;
     let mut pictures = Vec::new();
     for (name, profile) in BUILDS {
         let picture = format!("target/nightly/{name}.png");

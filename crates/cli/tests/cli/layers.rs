@@ -57,6 +57,8 @@ fn lists_that_make_no_layers() {
     fails("albedo,colour", &["there is no layer `colour`", "choose among normal, albedo"]);
     fails("a:depth,a:depth", &["two layers are called `a`"]);
     fails("eye:depth", &["is there already"]);
+    let many: Vec<String> = (0..65).map(|i| format!("a{i}:depth")).collect();
+    fails(&many.join(","), &["more than 64 layers"]);
     bench
         .run(&["render", "scene.xml", "--layers", "depth", "-o", "a.film"])
         .fails(2, &["films hold no layers", "--resume"]);

@@ -103,7 +103,12 @@ pub(super) fn read(index: usize, cx: &mut Context) -> Result<(), Diagnostic> {
 /// The list of `aov`: `NAME:TYPE`, between commas.
 fn layers(fields: &mut Fields, cx: &mut Context) -> Result<(), Diagnostic> {
     let Some((list, property)) = fields.string("aovs")? else { return Ok(()) };
-    for entry in list.split(',').map(str::trim).filter(|e| !e.is_empty()) {
+    for (i, entry) in list.split(',').map(str::trim).filter(|e| !e.is_empty()).enumerate() {
+        if i == Layer::MOST {
+            let message = format!("only the first {i} layers are looked at");
+            fields.warn_at(message, &property.value_origin);
+            break;
+        }
         let read = match entry.contains(':') {
             true => entry.parse::<Layer>(),
             false => Err(format!("`{}` is not NAME:TYPE", shorten(entry))),

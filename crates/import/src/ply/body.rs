@@ -94,8 +94,14 @@ impl<'b> Numbers<'b> {
         fault(format!("a list of {length} items is too long"), self.line)
     }
 
-    /// Passes a property, and tells how many numbers it has.
-    pub(super) fn skip(&mut self, property: &Property) -> Result<u64, Fault> {
+    /// Reads a property that nobody asks for.
+    fn skip(&mut self, property: &Property) -> Result<(), Fault> {
+        let count = property.list.map_or(Ok(1), |kind| self.length(kind))?;
+        (0..count).try_for_each(|_| self.next(property.kind).map(drop))
+    }
+
+    /// Passes a property without a look at its numbers, and tells how many it has.
+    pub(super) fn pass(&mut self, property: &Property) -> Result<u64, Fault> {
         let count = property.list.map_or(Ok(1), |kind| self.length(kind))?;
         match self.encoding {
             Encoding::Text => (0..count).try_for_each(|_| self.text().map(drop))?,
@@ -125,7 +131,7 @@ pub(super) fn read(header: &Header, body: &[u8], sizes: Sizes) -> Result<(Mesh, 
                     if element.properties.is_empty() {
                         break;
                     }
-                    element.properties.iter().try_for_each(|p| numbers.skip(p).map(drop))?;
+                    element.properties.iter().try_for_each(|p| numbers.skip(p))?;
                 }
             }
         }
@@ -189,7 +195,7 @@ fn vertices(
         let mut values = [0.0_f32; 8];
         for ((property, slot), other) in element.properties.iter().zip(&slots).zip(&mut others) {
             match slot {
-                _ if property.list.is_some() => drop(numbers.skip(property)?),
+                _ if property.list.is_some() => numbers.skip(property)?,
                 Some(slot) => values[*slot] = numbers.next(property.kind)? as f32,
                 None => *other = numbers.next(property.kind)? as f32,
             }
@@ -241,7 +247,7 @@ fn faces(
                     left_out += usize::from(!add_face(&corners, mesh, numbers.line)?);
                 }
                 None => *value = numbers.next(property.kind)? as f32,
-                Some(_) => drop(numbers.skip(property)?),
+                Some(_) => numbers.skip(property)?,
             }
         }
         columns.iter_mut().for_each(|c| c.push(&values, mesh.triangles.len() - before));

@@ -38,7 +38,7 @@ impl Sizes {
                 break;
             }
             for property in &element.properties {
-                let length = numbers.skip(property)? as usize;
+                let length = numbers.pass(property)? as usize;
                 if element.name == "face" && body::is_corners(property) {
                     self.triangles += length.saturating_sub(2);
                 }

@@ -155,6 +155,8 @@ fn channels_of_aov() {
     warned(&around("'§a:depth,b:albedo,a:depth'"), "two layers are called `a`");
     warned(&around("'§depth'"), "`depth` is not NAME:TYPE");
     warned(&around("'§eye:depth'"), "is there already");
+    let many = (0..100_000).map(|i| format!("a{i}:depth,")).collect::<String>();
+    warned(&around(&format!("'§{many}'")), "only the first 64 layers are looked at");
 }
 
 #[test]

@@ -154,6 +154,16 @@ fn errors_have_lines() {
     assert!(error.to_string().contains("ends too early"), "{error}");
 }
 
+/// Also in what nobody asks for.
+#[test]
+fn all_numbers_of_a_text_are_numbers() {
+    let extra = TEXT.replacen("element face", "element edge 1\nproperty list int int pair\nelement face", 1);
+    let with = |row: &str| extra.replacen("4 0 1 2 3", &format!("{row}\n4 0 1 2 3"), 1);
+    read_ply(with("2 0 1").as_bytes(), "m.ply").unwrap();
+    let error = read_ply(with("2 0 one").as_bytes(), "m.ply").unwrap_err().to_string();
+    assert!(error.contains("`one` is not a number"), "{error}");
+}
+
 #[test]
 fn large_claims_take_no_memory() {
     let head = "ply\nformat binary_little_endian 1.0\nelement vertex 4294967295\nproperty float x\n\

@@ -85,6 +85,9 @@ impl LayerKind {
     }
 }
 
+/// Of an unknown name, so many letters are told.
+const SHOWN: usize = 40;
+
 /// What `--layers` calls the shading normal.
 const NORMAL: &str = "normal";
 
@@ -97,7 +100,8 @@ impl FromStr for LayerKind {
         }
         Self::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
             let names: Vec<&str> = Self::ALL.iter().map(|kind| kind.name()).collect();
-            format!("there is no layer `{name}`: choose among {NORMAL}, {}", names.join(", "))
+            let shown: String = name.chars().take(SHOWN).collect();
+            format!("there is no layer `{shown}`: choose among {NORMAL}, {}", names.join(", "))
         })
     }
 }
@@ -128,7 +132,8 @@ impl FromStr for Layer {
         let kind: LayerKind = kind.trim().parse()?;
         let name = name.trim().to_owned();
         if name.is_empty() || name.len() > LONGEST || !name.bytes().all(|b| b.is_ascii_graphic()) {
-            return Err(format!("a layer of `{}` needs a name of plain characters", kind.name()));
+            let what = format!("a layer of `{}` needs a name of plain characters", kind.name());
+            return Err(format!("{what}, at most {LONGEST} of them"));
         }
         if TAKEN.contains(&name.as_str()) {
             return Err(format!("the layer `{name}` is there already: choose another name"));
@@ -138,6 +143,9 @@ impl FromStr for Layer {
 }
 
 impl Layer {
+    /// More layers are not written beside a picture.
+    pub const MOST: usize = 64;
+
     /// The names of its channels.
     pub fn channels(&self) -> impl Iterator<Item = String> {
         self.kind.channels().iter().map(|c| format!("{}.{c}", self.name))
