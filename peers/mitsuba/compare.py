@@ -172,10 +172,11 @@ def rows(scene, options):
 
 def store(table, options):
     """Puts the table into docs/results.md, in place of the one that is there."""
+    theirs = options.samples * options.reference
     text = f"""{HEADING}
 
 Made by `peers/mitsuba/compare.py`: each plugin that both read, in a small scene of `peers/mitsuba/scenes` (or as it says
-there). {options.samples} samples a pixel of Caustica, {options.reference} times as many of Mitsuba {mitsuba.__version__} (`{mitsuba.variant()}`), unless the scene
+there). {options.samples} samples a pixel of Caustica, {theirs} of Mitsuba {mitsuba.__version__} (`{mitsuba.variant()}`), unless the scene
 asks for more. A row passes if the means are within 0.5 % and the median over blocks of 8 × 8 pixels of their difference
 is within 1 %; ± is one standard error. [mitsuba.md](mitsuba.md) says what is known to differ.
 
