@@ -154,6 +154,7 @@ fn textured_diffuse() {
     let scene = "bsdf_spheres/test_textured_diffuse_path.xml";
     agrees(scene, "test_textured_diffuse", 16, None);
     agrees(scene, "test_textured_diffuse", 128, Some(Integrator::Bdpt));
+    agrees(scene, "test_textured_diffuse", 1024, Some(Integrator::Light));
 }
 
 #[test]
