@@ -691,17 +691,8 @@ fn parse_layers(text: &str) -> Result<LayerList, String> {
     if text.trim() == "none" {
         return Ok(LayerList(Vec::new()));
     }
-    let mut layers: Vec<Layer> = Vec::new();
-    for entry in text.split(',') {
-        let layer: Layer = entry.trim().parse()?;
-        if layers.iter().any(|other| other.collides(&layer)) {
-            return Err(format!("two layers are called `{}`", layer.name));
-        }
-        layers.push(layer);
-        if layers.len() > Layer::MOST {
-            return Err(format!("more than {} layers are not written", Layer::MOST));
-        }
-    }
+    let layers = text.split(',').map(|entry| entry.trim().parse()).collect::<Result<Vec<_>, _>>()?;
+    Layer::check_all(&layers)?;
     Ok(LayerList(layers))
 }
 

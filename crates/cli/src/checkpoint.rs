@@ -100,8 +100,8 @@ pub fn rescue(
     session: &Session<'_>,
     (provenance, report): (&Provenance, &Report),
 ) -> Failure {
-    let path = std::env::temp_dir().join(format!("caustica-{}.film", std::process::id()));
     let Failure::Output(why) = failure else { return failure };
+    let path = std::env::temp_dir().join(format!("caustica-{}.film", std::process::id()));
     match write_output(&path, session, (provenance, report)) {
         Ok(()) => Failure::Output(format!(
             "{why}; the film is saved as `{}`: go on with it by `--checkpoint` and `--resume`, or make a picture of it \

@@ -24,7 +24,7 @@ impl Session<'_> {
     /// on neither threads nor pauses.
     ///
     /// # Errors
-    /// Too many layers, channels of one name, layers that do not fit into memory, and if no thread can be started.
+    /// As [`Session::check_layers`], and if no thread can be started.
     pub fn layers(&self, layers: &[Layer]) -> Result<Vec<Channel>, RenderError> {
         let names = self.check_layers(layers)?;
         let window = self.film().layout().window;
@@ -60,17 +60,9 @@ impl Session<'_> {
     /// The names of the layers' channels, if they can be made: to be asked before hours of work, not after.
     ///
     /// # Errors
-    /// Too many layers (see [`Layer::MOST`]), channels of one name, and layers that do not fit into memory.
+    /// What [`Layer::check_all`] refuses, and layers that do not fit into memory.
     pub fn check_layers(&self, layers: &[Layer]) -> Result<Vec<String>, RenderError> {
-        if layers.len() > Layer::MOST {
-            return Err(FilmError::Layout(format!("more than {} layers are not written", Layer::MOST)).into());
-        }
-        for (i, layer) in layers.iter().enumerate() {
-            if layers[..i].iter().any(|other| other.collides(layer)) {
-                let why = format!("two layers are called `{}`", layer.name);
-                return Err(FilmError::Layout(why).into());
-            }
-        }
+        Layer::check_all(layers).map_err(FilmError::Layout)?;
         let names: Vec<String> = layers.iter().flat_map(Layer::channels).collect();
         let window = self.film().layout().window;
         // Once as they are made, and once as they are written.

@@ -44,8 +44,8 @@ pub trait Sink {
 pub struct Contribution<'a> {
     /// The strategy.
     pub strategy: Strategy,
-    /// The unweighted estimate: the path's measured radiance over its density, that of aimed rays with it. (For a sink without
-    /// [`Sink::KEEPS_ALL`] also over the probability with which it survived among the small ones.)
+    /// The unweighted estimate: the path's measured radiance over its density, that of aimed rays with it. (For a sink
+    /// without [`Sink::KEEPS_ALL`] also over the probability with which it survived among the small ones.)
     pub unweighted: Spectrum,
     /// The MIS factor.
     pub weight: f32,

@@ -2,8 +2,8 @@
 //!
 //! A file has one part. Its data window is the crop, its display window the full picture, and its
 //! channels are `combined.R/G/B`, `eye.R/G/B` and `light.R/G/B`, with `error.R/G/B` where error bars are known: half
-//! the width of the 95 % interval around eye and light image together, and the picture's further channels. Every fact about the render is a text
-//! attribute whose name begins with `caustica.`.
+//! the width of the 95 % interval around eye and light image together, and the picture's further channels. Every fact
+//! about the render is a text attribute whose name begins with `caustica.`.
 
 mod read;
 mod write;

@@ -46,6 +46,12 @@ impl<'t> Fields<'t> {
         error(message, &self.object.origin)
     }
 
+    /// Where the value of a property is, or the object if it has none of that name.
+    pub(super) fn place_of(&self, name: &str) -> &'t Origin {
+        let property = self.object.properties.iter().rfind(|p| p.name == name);
+        property.map_or(&self.object.origin, |p| &p.value_origin)
+    }
+
     /// A warning about the type of the object.
     pub(super) fn warn(&mut self, message: impl Into<String>) {
         self.warn_at(message, &self.object.plugin_origin);
@@ -234,9 +240,7 @@ impl<'t> Fields<'t> {
         if Vec3::new(d[0], d[1], d[2]).try_normalized().is_some() {
             return Ok(Some(d));
         }
-        let property = self.object.properties.iter().rfind(|p| p.name == name);
-        let origin = property.map_or(&self.object.origin, |p| &p.value_origin);
-        Err(error(format!("the direction `{name}` has no length"), origin))
+        Err(error(format!("the direction `{name}` has no length"), self.place_of(name)))
     }
 
     /// A colour of a property, if it is there.

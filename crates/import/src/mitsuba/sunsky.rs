@@ -7,7 +7,7 @@
 use caustica_math::{Rgb, Vec3};
 use caustica_scene::Diagnostic;
 use caustica_scene::description::{Daylight, Light, LightKind};
-use caustica_scene::light::LEAST_APERTURE;
+use caustica_scene::light::{LEAST_APERTURE, SUN_DIAMETER};
 
 use super::context::Context;
 use super::fields::Fields;
@@ -15,9 +15,6 @@ use super::spectrum::Role;
 use super::texture;
 use super::tree::error;
 use crate::nori::range::Bounds;
-
-/// The sun's diameter in degrees.
-const APERTURE: f32 = 0.5358;
 
 const WHEN_AND_WHERE: [&str; 9] =
     ["latitude", "longitude", "timezone", "year", "month", "day", "hour", "minute", "second"];
@@ -70,19 +67,15 @@ fn albedo(fields: &mut Fields, cx: &mut Context) -> Result<Rgb, Diagnostic> {
     if albedo.max_channel() <= 1.0 {
         return Ok(albedo);
     }
-    let property = fields.object.properties.iter().rfind(|p| p.name == "albedo");
-    let origin = property.map_or(&fields.object.origin, |p| &p.value_origin);
-    Err(error("`albedo` of the ground must be from 0 to 1", origin))
+    Err(error("`albedo` of the ground must be from 0 to 1", fields.place_of("albedo")))
 }
 
 /// In degrees. Suns that are too narrow are made wider, with the same light.
 fn aperture(fields: &mut Fields) -> Result<f32, Diagnostic> {
-    let aperture = fields.float("sun_aperture", APERTURE, Bounds::Between(0.0, 180.0))?;
+    let aperture = fields.float("sun_aperture", SUN_DIAMETER, Bounds::Between(0.0, 180.0))?;
     if aperture < LEAST_APERTURE {
         let message = format!("`sun_aperture` is less than {LEAST_APERTURE}°, which is taken in its place");
-        let property = fields.object.properties.iter().rfind(|p| p.name == "sun_aperture");
-        let origin = property.map_or(&fields.object.origin, |p| &p.value_origin).clone();
-        fields.warn_at(message, &origin);
+        fields.warn_at(message, fields.place_of("sun_aperture"));
     }
     Ok(aperture.max(LEAST_APERTURE))
 }

@@ -146,6 +146,22 @@ impl Layer {
     /// More layers are not written beside a picture.
     pub const MOST: usize = 64;
 
+    /// Whether these can be written beside a picture.
+    ///
+    /// # Errors
+    /// More than [`Self::MOST`], and channels of one name.
+    pub fn check_all(layers: &[Self]) -> Result<(), String> {
+        if layers.len() > Self::MOST {
+            return Err(format!("more than {} layers are not written", Self::MOST));
+        }
+        for (i, layer) in layers.iter().enumerate() {
+            if layers[..i].iter().any(|other| other.collides(layer)) {
+                return Err(format!("two layers are called `{}`", layer.name));
+            }
+        }
+        Ok(())
+    }
+
     /// The names of its channels.
     pub fn channels(&self) -> impl Iterator<Item = String> {
         self.kind.channels().iter().map(|c| format!("{}.{c}", self.name))

@@ -22,7 +22,7 @@ use crate::surface::{SurfacePoint, Surfaces};
 use crate::texture::TextureTable;
 
 pub use area::AreaLight;
-pub use daylight::{Heaven, LEAST_APERTURE, SkyLight, SunLight};
+pub use daylight::{Heaven, LEAST_APERTURE, SUN_DIAMETER, SkyLight, SunLight};
 pub use delta::{DirectionalLight, Falloff, SpotLight};
 pub use environment::{EnvironmentLight, EnvironmentMap};
 pub use lights::{FEWEST_PARTS, Lights};

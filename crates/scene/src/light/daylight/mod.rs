@@ -8,7 +8,7 @@ mod sky;
 mod sun;
 
 pub use sky::SkyLight;
-pub use sun::{LEAST_APERTURE, SunLight};
+pub use sun::{LEAST_APERTURE, SUN_DIAMETER, SunLight};
 
 use caustica_math::Vec3;
 

@@ -14,8 +14,8 @@ const WAVELENGTHS: usize = 11;
 const POWERS: usize = 4;
 const BLOCK: usize = PIECES * WAVELENGTHS * POWERS;
 
-/// The sun's diameter, in degrees, for which the figures are.
-const DIAMETER: f32 = 0.5358;
+/// The sun's diameter as it is seen, in degrees: the one for which the figures are.
+pub const SUN_DIAMETER: f32 = 0.5358;
 
 /// Narrower suns are refused, in degrees: their directions are told apart by too few bits.
 pub const LEAST_APERTURE: f32 = 0.01;
@@ -117,7 +117,7 @@ impl SunLight {
     pub fn new(heaven: &Heaven, aperture: f32, scale: f32, darkened: bool) -> Self {
         let disc = Disc::new(aperture);
         let surface = if darkened {
-            let smaller = Disc::new(DIAMETER).edge / disc.end;
+            let smaller = Disc::new(SUN_DIAMETER).edge / disc.end;
             Surface::Darkened(pieces(heaven.turbidity, scale * smaller))
         } else {
             let irradiance = irradiance(&pieces(heaven.turbidity, scale), heaven.elevation());
@@ -244,7 +244,7 @@ fn irradiance(pieces: &[Piece; PIECES], elevation: f32) -> Rgb {
 
 /// ∫ radiance dω over a sun of the usual size whose middle has that elevation.
 fn over_disc(pieces: &[Piece; PIECES], elevation: f32) -> Rgb {
-    let disc = Disc::new(DIAMETER);
+    let disc = Disc::new(SUN_DIAMETER);
     // With the cosine μ at the sun's surface, a ring is proportional to 2μ dμ, and the radiance a polynomial in μ: exact
     // by four of Gauss's points.
     const POINTS: [(f32, f32); 4] = [
