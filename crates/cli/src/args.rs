@@ -443,6 +443,10 @@ pub struct Sampling {
     #[arg(long, value_name = "N", default_value_t = Settings::default().aimed_rays,
         value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MOST_AIMED_RAYS)))]
     pub aimed_rays: u32,
+    /// Light paths that bdpt joins each eye path with: its own and those of pixels some way off (a power of two). More cost
+    /// more time a sample, and pay where most light is indirect
+    #[arg(long, value_name = "N", default_value_t = Settings::default().shared_light_paths, value_parser = parse_shared)]
+    pub shared_light_paths: u32,
     /// How the strategies of bdpt are weighed
     #[arg(long, value_enum, default_value_t = HeuristicChoice::Balance)]
     pub heuristic: HeuristicChoice,
@@ -469,6 +473,7 @@ impl Sampling {
             sampler: self.sampler.into(),
             heuristic: self.heuristic.into(),
             aimed_rays: self.aimed_rays,
+            shared_light_paths: self.shared_light_paths,
             ..Settings::default()
         }
     }
@@ -482,6 +487,7 @@ impl Sampling {
             ("max depth", depth),
             ("roulette depth", roulette),
             ("aimed rays", self.aimed_rays.to_string()),
+            ("shared light paths", self.shared_light_paths.to_string()),
             ("seed", self.seed.to_string()),
             ("sampler", self.sampler.to_possible_value().map(name).unwrap_or_default()),
             ("heuristic", self.heuristic.to_possible_value().map(name).unwrap_or_default()),
@@ -803,6 +809,14 @@ fn parse_exposure(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
         _ => Err("use a number of stops between -100 and 100".into()),
+    }
+}
+
+fn parse_shared(text: &str) -> Result<u32, String> {
+    const MOST: u32 = Settings::MOST_SHARED_LIGHT_PATHS;
+    match text.parse::<u32>() {
+        Ok(paths) if paths.is_power_of_two() && paths <= MOST => Ok(paths),
+        _ => Err(format!("use 1, 2, 4, 8 or {MOST}")),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::names::integrator_name;
 use crate::session::{heuristic_name, sampler_name};
 
 /// Films of different numbers do not add up: raise it when a change gives samples other bits.
-const SAMPLING: u32 = 2;
+const SAMPLING: u32 = 3;
 
 /// All that a sample depends on beside the scene and its own number, by name.
 pub(crate) fn facts(settings: &Settings) -> BTreeMap<String, String> {
@@ -24,6 +24,7 @@ pub(crate) fn facts(settings: &Settings) -> BTreeMap<String, String> {
         ("heuristic", heuristic_name(settings.heuristic).to_owned()),
         ("rouletteDepth", settings.roulette_start().to_string()),
         ("aimedRays", settings.aimed_rays.to_string()),
+        ("sharedLightPaths", settings.shared_light_paths.to_string()),
         ("maxDepth", settings.max_depth.map_or_else(|| "unlimited".to_owned(), |d| d.to_string())),
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("sampling", SAMPLING.to_string()),

@@ -124,7 +124,7 @@ impl<'a> Pyramid<'a> {
     fn work(&self, units: Units<'_>) {
         let (mut scratch, mut parts) = (Scratch::default(), Vec::new());
         for (pass, tile) in units {
-            for pixel in pixels(tile) {
+            for pixel in self.kernel.in_groups(pixels(tile)) {
                 let mut sink = PyramidSink { pyramid: self, pixel, parts: &mut parts, splat: None };
                 self.kernel.sample(pixel, pass, &mut scratch, &mut sink);
             }

@@ -294,7 +294,7 @@ impl<'a> Session<'a> {
         let mut buffers = halves.each_ref().map(|f| if buffered { f.light_buffer() } else { None });
         for (pass, tile) in units {
             let half = half_of(pass.into());
-            for pixel in pixels(tile) {
+            for pixel in self.kernel.in_groups(pixels(tile)) {
                 let (film, kernel) = (&halves[half], &self.kernel);
                 let mut sink = FilmSink { film, kernel, buffer: buffers[half].as_mut(), pixel };
                 self.kernel.sample(pixel, pass, &mut scratch, &mut sink);

@@ -8,7 +8,7 @@
 //! with scattering taken as light travels, both cosines on the light's side, and geometric normals in G. A vertex
 //! at infinity is measured by direction: its edge has no 1/d² and no cosine there. Strategy s = i makes the path
 //! with a density pᵢ(x), in the product of the vertices' own measures, and tries nᵢ times: once, or for i = k as
-//! often as the window has pixels. Its estimate must be f/(nᵢ·pᵢ), its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
+//! often as the window has pixels, or for 2 ≤ i < k with as many light paths as pixels share. Its estimate must be f/(nᵢ·pᵢ), its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
 //!
 //! The point on the lens has the same density in every strategy and is left out of both f and pᵢ. So are
 //! Dirac distributions: each smooth surface puts one δ(to_light) into f and into every density, and what stands
@@ -163,11 +163,11 @@ impl Judgement {
     }
 }
 
-/// Judges a contribution found in that scene.
+/// Judges a contribution found in that scene, where pixels share so many light paths.
 ///
 /// # Errors
 /// If it is no path at all: vertices are missing, a mirror does not mirror, the film position is elsewhere.
-pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
+pub fn judge(scene: &Scene, c: &Contribution<'_>, shared: u32) -> Result<Judgement, String> {
     let nodes = nodes(c)?;
     let (k, lamp) = (nodes.len() - 1, &c.path.lamp);
     let lights = scene.lights(Wavelengths::Rgb);
@@ -207,6 +207,7 @@ pub fn judge(scene: &Scene, c: &Contribution<'_>) -> Result<Judgement, String> {
     };
     let window = scene.film.window();
     let mut densities: Vec<f64> = (0..=k).map(|i| density(i, &scatterings, &edges, &starts)).collect();
+    densities.iter_mut().take(k).skip(2).for_each(|density| *density *= f64::from(shared));
     let joinable = scene.camera.joins() != Joins::Nothing;
     densities[k] *= if joinable { f64::from(window.width) * f64::from(window.height) } else { 0.0 };
     // A spot alone differs by direction, by the cosine to its axis: that of a shortened vector is less.

@@ -1,5 +1,7 @@
 //! The kernel: a scene with the settings that it is rendered by.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use caustica_math::filter::PixelFilter;
 use caustica_math::{Rgb, SampleId, Sampler, Spectrum, Vec2, Wavelengths};
 use caustica_scene::Scene;
@@ -9,6 +11,7 @@ use caustica_scene::description::Integrator;
 
 use crate::bdpt::Candidates;
 use crate::numbers::{EyeNumbers, Needs};
+use crate::shared::{Groups, LightPaths};
 use crate::sink::Sink;
 use crate::strategy::{Classes, StrategySet};
 use crate::vertex::Vertex;
@@ -39,6 +42,9 @@ pub struct Settings {
     /// How many rays `bdpt` aims at mirrors and glass from each point of an eye path from where no other strategy makes
     /// a path; at most [`Settings::MOST_AIMED_RAYS`]. Weights that add up all strategies go without.
     pub aimed_rays: u32,
+    /// How many light paths `bdpt` joins each eye path with: its own and those of pixels some way off. A power of two, at
+    /// most [`Settings::MOST_SHARED_LIGHT_PATHS`]; anything else counts as the next that is smaller.
+    pub shared_light_paths: u32,
 }
 
 impl Default for Settings {
@@ -53,6 +59,7 @@ impl Default for Settings {
             heuristic: Heuristic::Balance,
             exhaustive_weights: false,
             aimed_rays: 2,
+            shared_light_paths: 4,
         }
     }
 }
@@ -60,6 +67,8 @@ impl Default for Settings {
 impl Settings {
     /// More rays are not aimed.
     pub const MOST_AIMED_RAYS: u32 = 63;
+    /// No more pixels share their light paths.
+    pub const MOST_SHARED_LIGHT_PATHS: u32 = 16;
 
     /// After how many bounces roulette begins, by default or as set.
     pub fn roulette_start(&self) -> u32 {
@@ -71,6 +80,9 @@ impl Settings {
 /// Longer paths than this are cut even without a limit, so that a scene of perfect mirrors ends. Roulette
 /// alone makes them rarer than one in 10⁴ of those that no surface absorbs.
 const LONGEST_PATH: u32 = 1024;
+
+/// How many kernels there have been.
+static KERNELS: AtomicU64 = AtomicU64::new(0);
 
 /// Renders samples of one scene. Shared between threads; all that changes is in [`Scratch`] and the sink.
 #[derive(Debug)]
@@ -89,17 +101,24 @@ pub struct Kernel<'a> {
     pub(crate) light_paths: f32,
     pub(crate) wavelengths: Wavelengths,
     pub(crate) needs: Needs,
+    pub(crate) groups: Groups,
+    /// How many light paths each eye path is joined with; zero if the set has no strategy that does.
+    pub(crate) joins: f32,
+    /// Like that of no other kernel, so that buffers know whose paths they hold.
+    pub(crate) number: u64,
 }
 
 /// Buffers that are used again for every sample of a thread.
 #[derive(Debug, Default)]
 pub struct Scratch {
     pub(crate) eye: Subpath,
-    pub(crate) light: Subpath,
+    pub(crate) lights: LightPaths,
     pub(crate) densities: Vec<VertexDensities>,
     pub(crate) weights: Vec<f32>,
     pub(crate) candidates: Candidates,
     pub(crate) aimed: Vec<Vertex>,
+    /// A light path that is not joined with anything.
+    pub(crate) looked_at: Subpath,
 }
 
 /// One eye path's beginning.
@@ -119,11 +138,13 @@ impl<'a> Kernel<'a> {
             settings.strategies = settings.strategies.without_splats();
         }
         let exhaustive = settings.exhaustive_weights || settings.strategies.classes().is_none();
+        let classes = settings.strategies.touched();
+        let groups = Groups::new(window, if classes.inner { settings.shared_light_paths } else { 1 });
         let aims = !exhaustive && !scene.casters().is_empty();
         Self {
             scene,
             filter: PixelFilter::new(&scene.film.filter),
-            classes: settings.strategies.touched(),
+            classes,
             exhaustive,
             aimed_rays: if aims { settings.aimed_rays.min(Settings::MOST_AIMED_RAYS) } else { 0 },
             heuristic: settings.heuristic,
@@ -132,6 +153,9 @@ impl<'a> Kernel<'a> {
             light_paths: window.width as f32 * window.height as f32,
             wavelengths: Wavelengths::Rgb,
             needs: Needs::of(scene),
+            joins: if classes.inner { groups.size() as f32 } else { 0.0 },
+            groups,
+            number: KERNELS.fetch_add(1, Ordering::Relaxed),
             settings,
         }
     }

@@ -14,6 +14,7 @@ mod layers;
 mod light_tracer;
 mod numbers;
 mod path_tracer;
+mod shared;
 pub mod sink;
 pub mod strategy;
 mod subpaths;

@@ -5,11 +5,11 @@ use caustica_math::{SampleId, Spectrum};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
 
-use crate::bdpt::emission_flight;
 use crate::kernel::Kernel;
 use crate::numbers::{Bounces, LightNumbers};
 use crate::sink::Sink;
 use crate::vertex::Vertex;
+use crate::walk::emission_flight;
 
 impl Kernel<'_> {
     pub(crate) fn trace_light<S: Sink>(&self, id: SampleId, sink: &mut S) {

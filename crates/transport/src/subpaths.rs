@@ -3,9 +3,7 @@
 use caustica_math::{SampleId, Vec2, Vec3};
 use caustica_scene::light::Emission;
 
-use crate::bdpt::emission_flight;
 use crate::kernel::{Kernel, Scratch};
-use crate::numbers::LightNumbers;
 use crate::vertex::Vertex;
 use crate::walk::Start;
 
@@ -31,19 +29,13 @@ impl Kernel<'_> {
         let mut eye = self.eye_sample(id);
         let flight = Self::camera_flight(&eye.ray);
         self.grow(flight, &Start::Camera, &mut eye.numbers, &mut scratch.eye);
-        let mut numbers = LightNumbers::new(self.settings.sampler, id, self.needs);
-        scratch.light.vertices.clear();
-        let [choice, u, v] = numbers.emission();
-        let emission = self.scene.lights(self.wavelengths).sample_emission(choice, u, v);
-        if let Some(e) = &emission {
-            self.grow(emission_flight(e), &Start::Light(e), &mut numbers, &mut scratch.light);
-        }
+        let emission = self.light_path(id, &mut scratch.looked_at);
         Subpaths {
             eye: &scratch.eye.vertices,
             film: eye.film,
             escape: scratch.eye.escape.map(|e| e.direction),
             emission,
-            light: &scratch.light.vertices,
+            light: &scratch.looked_at.vertices,
         }
     }
 }

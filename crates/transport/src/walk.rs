@@ -3,7 +3,7 @@
 use caustica_math::{Spectrum, Vec3};
 use caustica_scene::bsdf::Walk;
 use caustica_scene::bvh::Ray;
-use caustica_scene::light::Emission;
+use caustica_scene::light::{Anchor, Emission};
 
 use crate::edge::Edge;
 use crate::fault::{Fault, is_planted};
@@ -30,6 +30,21 @@ pub(crate) struct Flight {
     pub delta: bool,
     /// Product of (n_camera/n_light)² so far, which roulette leaves out of account.
     pub radiance_scale: f32,
+}
+
+/// The first flight of a light walk.
+pub(crate) fn emission_flight(emission: &Emission) -> Flight {
+    let pdf = emission.pdf;
+    Flight {
+        ray: Ray { origin: emission.origin, direction: emission.direction, t_max: f32::INFINITY },
+        throughput: emission.radiance * (emission.cos / (pdf.point.0 * pdf.direction.0)),
+        pdf: pdf.direction.0,
+        from: (emission.point.anchor != Anchor::Infinite).then_some(emission.point.at),
+        cos: emission.cos,
+        reverse: 0.0,
+        delta: false,
+        radiance_scale: 1.0,
+    }
 }
 
 /// A subpath: its surface vertices, without the point on the lamp or the lens.
@@ -182,8 +197,8 @@ impl Kernel<'_> {
     /// The sums of the vertex at the end of the flight.
     #[inline]
     fn step(&self, sums: RunningSums, flight: &Flight, forward: f32, back: f32) -> RunningSums {
-        let step = Step { forward, reverse: flight.reverse, back, delta: flight.delta };
-        sums.step(step, self.classes.inner, self.heuristic)
+        let Flight { reverse, delta, .. } = *flight;
+        sums.step(Step { forward, reverse, back, delta, joins: self.joins }, self.heuristic)
     }
 
     /// The sums of a walk's first surface vertex.

@@ -5,7 +5,9 @@
 //! p_s = ∏_{j<s} p→(xⱼ) · ∏_{j≥s} p←(xⱼ), and the balance heuristic gives it the weight p_s/Σ pᵢ (Veach,
 //! "Robust Monte Carlo Methods for Light Transport Simulation", 1997, 10.2). Two strategies have densities of
 //! their own at an end: next-event estimation finds x₀ with another density than emission, and strategy
-//! t = 1 is tried by every light path of a pass, N times as often as a pixel's eye path.
+//! t = 1 is tried by every light path of a pass, N times as often as a pixel's eye path. An eye path is joined with n
+//! light paths, so that the strategies with s ≥ 2 and t ≥ 2 are tried n times. Everywhere pₛ stands for a density times
+//! how often it is tried.
 //!
 //! Roulette is left out of all densities: its probability belongs to a walk and not to the path, and weights
 //! need only add up to one for each path. Every strategy's throughput is divided by it.
@@ -84,16 +86,18 @@ pub struct Step {
     pub back: f32,
     /// Whether the old vertex scattered by a Dirac lobe: then neither edge at it can join.
     pub delta: bool,
+    /// How often strategies of class `inner` are tried; zero if they are not in the set.
+    pub joins: f32,
 }
 
 impl RunningSums {
-    /// The sums at the next vertex. `joins` is whether strategies of class `inner` are in the set.
+    /// The sums at the next vertex.
     #[inline]
-    pub fn step(self, step: Step, joins: bool, h: Heuristic) -> Self {
+    pub fn step(self, step: Step, h: Heuristic) -> Self {
         let recent = if step.delta { 0.0 } else { self.recent };
         let inverse = 1.0 / step.forward;
         Self {
-            recent: if step.delta || !joins { 0.0 } else { inverse },
+            recent: if step.delta { 0.0 } else { step.joins * inverse },
             past: step.back * inverse * h.sum(recent, step.reverse * self.past),
         }
     }
@@ -130,6 +134,8 @@ pub struct Ends {
     pub next_event: f32,
     /// How many light paths try t = 1 for each eye path of a pixel.
     pub light_paths: f32,
+    /// How many light paths an eye path is joined with, for s ≥ 2 and t ≥ 2.
+    pub joins: f32,
 }
 
 /// The weight of strategy `s` for a path of `vertices` (x₀ to x_{k−1}: all but the one on the camera), by
@@ -168,8 +174,12 @@ pub fn each_density(
         // A lamp beside others that are brighter by more than an `f32` can tell is never chosen, by either.
         let apart = i == 1 && k > 1 && vertices[0].from_light > 0.0;
         let next_event = if apart { ends.next_event / vertices[0].from_light } else { 1.0 };
-        let light_paths = if i == k { ends.light_paths } else { 1.0 };
-        f64::from(next_event) * f64::from(light_paths)
+        let tries = match i {
+            _ if i == k => ends.light_paths,
+            0 | 1 => 1.0,
+            _ => ends.joins,
+        };
+        f64::from(next_event) * f64::from(tries)
     };
     // Densities relative to the plain product of strategy s, whose factors are positive; in f64, because
     // long paths span many decades.
@@ -203,7 +213,7 @@ mod tests {
     #[test]
     fn a_lamp_that_is_never_chosen_leaves_all_to_hits() {
         let path = [vertex(0.0, 0.25), vertex(3.0, 8e11)];
-        let ends = Ends { next_event: 0.0, light_paths: 35.0 };
+        let ends = Ends { next_event: 0.0, light_paths: 35.0, joins: 1.0 };
         for h in [Heuristic::Balance, Heuristic::Power] {
             assert_eq!(exhaustive(&path, ends, 0, h, |i| i <= 1), 1.0);
             assert_eq!(exhaustive(&path, ends, 0, h, |_| true), 1.0);
@@ -227,12 +237,12 @@ mod tests {
         }
     }
 
-    /// Densities of powers of two, whose ratios are exact: p₀ = 2·4, p₁ = 16·4, p₂ = 8·32·3.
+    /// Densities of powers of two, whose ratios are exact: p₀ = 2·4·8, p₁ = 16·4·8, p₂ = 8·32·8·5, p₃ = 8·32·2·3.
     #[test]
-    fn the_ends_have_densities_of_their_own() {
-        let path = [vertex(8.0, 2.0), vertex(32.0, 4.0)];
-        let ends = Ends { next_event: 16.0, light_paths: 3.0 };
-        let densities = [8.0, 64.0, 768.0_f32];
+    fn the_strategies_are_tried_as_often_as_they_are() {
+        let path = [vertex(8.0, 2.0), vertex(32.0, 4.0), vertex(2.0, 8.0)];
+        let ends = Ends { next_event: 16.0, light_paths: 3.0, joins: 5.0 };
+        let densities = [64.0, 512.0, 10240.0, 1536.0_f32];
         for (h, power) in [(Heuristic::Balance, 1), (Heuristic::Power, 2)] {
             let sum: f32 = densities.iter().map(|d| d.powi(power)).sum();
             for (s, density) in densities.iter().enumerate() {

@@ -44,7 +44,7 @@ impl Kernel<'_> {
         let lights = self.scene.lights(self.wavelengths);
         let (s, t) = (joined.strategy.s as usize, joined.strategy.t as usize);
         let Junction { light: (light_end, before_light), eye: (eye_end, before_eye) } = joined.junction;
-        let light = &sample.light.vertices[..s.saturating_sub(1)];
+        let light = sample.light_vertices(joined);
         let escaped = s == 0 && t - 1 > sample.eye.vertices.len();
         let eye = &sample.eye.vertices[..t - 1 - usize::from(escaped)];
         let delta_lamp = lights.lights.get(joined.lamp.light).is_delta();
@@ -54,7 +54,7 @@ impl Kernel<'_> {
             let from_camera = match s {
                 1 => light_end,
                 2 => before_light * light[0].back,
-                _ => sample.light.origin_reverse,
+                _ => sample.lights[joined.light].path.origin_reverse,
             };
             all.push(VertexDensities { from_light: joined.emitted, from_camera, delta: delta_lamp });
         }
@@ -89,6 +89,6 @@ impl Kernel<'_> {
             }
         };
         let found = next_to_lamp.map_or(0.0, |from| lights.towards_pdf(from, &joined.lamp).0);
-        Ends { next_event: found, light_paths: self.light_paths }
+        Ends { next_event: found, light_paths: self.light_paths, joins: self.joins }
     }
 }

@@ -11,24 +11,24 @@ mod splat;
 use std::cell::RefCell;
 
 use caustica_math::{SampleId, Spectrum, Vec2};
-use caustica_scene::bvh::Ray;
 use caustica_scene::camera::{CameraLink, CameraPoint};
-use caustica_scene::light::{Anchor, Emission, LightPoint};
+use caustica_scene::light::{Emission, LightPoint};
 
 pub(crate) use candidate::Candidates;
 
 use crate::kernel::{EyeSample, Kernel, Scratch};
-use crate::numbers::LightNumbers;
+use crate::shared::LightPath;
 use crate::sink::{Contribution, PathView, Sink};
 use crate::strategy::Strategy;
-use crate::walk::{Flight, Start, Subpath};
+use crate::vertex::Vertex;
+use crate::walk::{Start, Subpath};
 use crate::weight::VertexDensities;
 
 /// One sample's subpaths.
 struct Sample<'a> {
     eye: &'a Subpath,
-    light: &'a Subpath,
-    emission: Option<Emission>,
+    /// The light paths that it is joined with.
+    lights: &'a [LightPath],
     camera: CameraPoint,
     film: Vec2,
     filter_weight: f32,
@@ -51,6 +51,8 @@ struct Junction {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Joined {
     strategy: Strategy,
+    /// Which light path has its light vertices, if there are any.
+    light: usize,
     lamp: LightPoint,
     junction: Junction,
     /// Density of the lamp's point by emission.
@@ -70,7 +72,18 @@ impl Sample<'_> {
         junction: Junction,
         value: Spectrum,
     ) -> Joined {
-        Joined { strategy, lamp, emitted, junction, value, film: self.film, camera: self.camera }
+        let light = 0;
+        Joined { strategy, light, lamp, emitted, junction, value, film: self.film, camera: self.camera }
+    }
+}
+
+impl Sample<'_> {
+    /// The light vertices of a path.
+    fn light_vertices(&self, joined: &Joined) -> &[Vertex] {
+        match joined.strategy.s as usize {
+            0 | 1 => &[],
+            s => &self.lights[joined.light].path.vertices[..s - 1],
+        }
     }
 }
 
@@ -78,38 +91,37 @@ impl Joined {
     /// A path of strategy (s, 1), seen through `link`.
     fn seen(
         strategy: Strategy,
-        emission: &Emission,
+        (light, emission): (usize, &Emission),
         junction: Junction,
         value: Spectrum,
         link: &CameraLink,
     ) -> Self {
         let (lamp, emitted) = (emission.point, emission.pdf.point.0);
-        Self { strategy, lamp, emitted, junction, value, film: link.film, camera: link.point }
+        Self { strategy, light, lamp, emitted, junction, value, film: link.film, camera: link.point }
     }
 }
 
 impl Kernel<'_> {
     pub(crate) fn bdpt<S: Sink>(&self, id: SampleId, scratch: &mut Scratch, sink: &mut S) {
         let EyeSample { film, filter_weight, ray, mut numbers } = self.eye_sample(id);
-        let mut light_numbers = LightNumbers::new(self.settings.sampler, id, self.needs);
         let classes = self.classes;
+        let Scratch { eye, lights, densities, weights, candidates, aimed, .. } = scratch;
+        eye.clear();
         if classes.hit || classes.next_event || classes.inner {
-            self.grow(Self::camera_flight(&ray), &Start::Camera, &mut numbers, &mut scratch.eye);
+            self.grow(Self::camera_flight(&ray), &Start::Camera, &mut numbers, eye);
         }
-        let emission = if classes.splat || classes.inner {
-            self.light_path(&mut light_numbers, &mut scratch.light)
-        } else {
-            None
-        };
-        let Scratch { eye, light, densities, weights, candidates, aimed } = scratch;
-        for failed in [eye.failed, light.failed] {
+        if classes.splat || classes.inner {
+            self.grow_light_paths(id, lights);
+        }
+        let lights = &lights.paths[..];
+        let own = lights.iter().position(|light| light.pixel == id.pixel);
+        for failed in [eye.failed, own.is_some_and(|own| lights[own].path.failed)] {
             if failed {
                 sink.invalid();
             }
         }
         let (densities, weights) = (RefCell::new(densities), RefCell::new(weights));
-        let sample =
-            Sample { eye, light, emission, camera: ray.point, film, filter_weight, densities, weights };
+        let sample = Sample { eye, lights, camera: ray.point, film, filter_weight, densities, weights };
         let mut sum = Spectrum::ZERO;
         if classes.hit {
             sum += self.hits(&sample, sink);
@@ -123,19 +135,10 @@ impl Kernel<'_> {
             self.connections::<S>(&sample, candidates);
         }
         sum += self.settle(&sample, sum, (candidates, &mut numbers), sink);
-        if classes.splat {
-            self.splats(&sample, &mut light_numbers, sink);
+        if let Some(own) = own.filter(|_| classes.splat) {
+            self.splats(&sample, own, &mut self.light_numbers(id), sink);
         }
         self.deliver(sum, filter_weight, sink);
-    }
-
-    /// Emits and grows the light path.
-    fn light_path(&self, numbers: &mut LightNumbers, path: &mut Subpath) -> Option<Emission> {
-        path.clear();
-        let [choice, u, v] = numbers.emission();
-        let emission = self.scene.lights(self.wavelengths).sample_emission(choice, u, v)?;
-        self.grow(emission_flight(&emission), &Start::Light(&emission), numbers, path);
-        Some(emission)
     }
 
     /// Weighs a contribution and tells a sink that probes.
@@ -195,26 +198,11 @@ impl Kernel<'_> {
             filter_weight: if t == 1 { self.scene.camera.response() } else { sample.filter_weight },
             path: PathView {
                 lamp: joined.lamp,
-                light: &sample.light.vertices[..s.saturating_sub(1)],
+                light: sample.light_vertices(joined),
                 eye: &eye[..(t - 1).min(eye.len())],
                 camera: joined.camera,
             },
             weights: &weights,
         });
-    }
-}
-
-/// The first flight of a light walk.
-pub(crate) fn emission_flight(emission: &Emission) -> Flight {
-    let pdf = emission.pdf;
-    Flight {
-        ray: Ray { origin: emission.origin, direction: emission.direction, t_max: f32::INFINITY },
-        throughput: emission.radiance * (emission.cos / (pdf.point.0 * pdf.direction.0)),
-        pdf: pdf.direction.0,
-        from: (emission.point.anchor != Anchor::Infinite).then_some(emission.point.at),
-        cos: emission.cos,
-        reverse: 0.0,
-        delta: false,
-        radiance_scale: 1.0,
     }
 }

@@ -10,6 +10,7 @@ use super::{Joined, Junction, Sample};
 use crate::fault::{Fault, is_planted};
 use crate::kernel::Kernel;
 use crate::numbers::LightNumbers;
+use crate::shared::LightPath;
 use crate::sink::Sink;
 use crate::strategy::Strategy;
 use crate::vertex::{Scatter, Vertex};
@@ -17,14 +18,23 @@ use crate::weight::weight;
 
 impl Kernel<'_> {
     /// t = 1: the lamp's point and every light vertex, into the light image.
-    pub(super) fn splats<S: Sink>(&self, sample: &Sample<'_>, numbers: &mut LightNumbers, sink: &mut S) {
-        let Some(emission) = sample.emission else { return };
-        if let Some(value) = self.splat_lamp(sample, &emission, numbers.lamp_lens(), sink) {
+    pub(super) fn splats<S: Sink>(
+        &self,
+        sample: &Sample<'_>,
+        own: usize,
+        numbers: &mut LightNumbers,
+        sink: &mut S,
+    ) {
+        let LightPath { path, emission, .. } = &sample.lights[own];
+        let Some(emission) = emission else { return };
+        let light = (own, emission);
+        if let Some(value) = self.splat_lamp(sample, light, numbers.lamp_lens(), sink) {
             self.splat(value.1, value.0, sink);
         }
-        for i in 0..sample.light.vertices.len() {
-            if sample.light.vertices[i].is_connectible()
-                && let Some((value, film)) = self.splat_vertex(sample, i, numbers.lens(i), sink)
+        for (i, vertex) in path.vertices.iter().enumerate() {
+            if vertex.is_connectible()
+                && let Some((value, film)) =
+                    self.splat_vertex(sample, light, (i, vertex), numbers.lens(i), sink)
             {
                 self.splat(film, value, sink);
             }
@@ -35,7 +45,7 @@ impl Kernel<'_> {
     fn splat_lamp<S: Sink>(
         &self,
         sample: &Sample<'_>,
-        emission: &Emission,
+        (own, emission): (usize, &Emission),
         lens: [f32; 2],
         sink: &mut S,
     ) -> Option<(Spectrum, Vec2)> {
@@ -47,7 +57,7 @@ impl Kernel<'_> {
         let from_camera = link.pdf.0 * link.falloff * lamp.cos(link.direction);
         let value = radiance * (from_camera / (emission.pdf.point.0 * self.light_paths));
         let junction = Junction { light: (from_camera, 0.0), eye: (0.0, 0.0) };
-        let joined = Joined::seen(strategy, emission, junction, value, &link);
+        let joined = Joined::seen(strategy, (own, emission), junction, value, &link);
         let value = self.finish(
             sample,
             &joined,
@@ -93,7 +103,8 @@ impl Kernel<'_> {
     fn splat_vertex<S: Sink>(
         &self,
         sample: &Sample<'_>,
-        i: usize,
+        (own, emission): (usize, &Emission),
+        (i, y): (usize, &Vertex),
         lens: [f32; 2],
         sink: &mut S,
     ) -> Option<(Spectrum, Vec2)> {
@@ -101,7 +112,6 @@ impl Kernel<'_> {
         if !self.is_wanted(strategy) {
             return None;
         }
-        let y = &sample.light.vertices[i];
         let (link, at_light) = self.camera_link(y, lens)?;
         let value = y.throughput * at_light.value * (link.pdf.0 * link.falloff / self.light_paths);
         if value.is_black() || !self.is_seen_from_camera(&y.point, &link) {
@@ -109,16 +119,14 @@ impl Kernel<'_> {
         }
         let from_camera = link.pdf.0 * link.falloff * y.cos(link.direction);
         let junction = Junction { light: (from_camera, at_light.reverse.0), eye: (0.0, 0.0) };
-        let emission = sample.emission.as_ref()?;
-        let joined = Joined::seen(strategy, emission, junction, value, &link);
+        let joined = Joined::seen(strategy, (own, emission), junction, value, &link);
         let value = self.finish(
             sample,
             &joined,
             || {
                 let h = self.heuristic;
-                let sums = sample.light.vertices[i].sums;
                 let paths = if is_planted(Fault::LightPaths) { 1.0 } else { self.light_paths };
-                weight(sums.total(from_camera / paths, at_light.reverse.0, h), 0.0)
+                weight(y.sums.total(from_camera / paths, at_light.reverse.0, h), 0.0)
             },
             sink,
         );
