@@ -189,6 +189,14 @@ impl Vertex {
         self.point.normal.dot(direction).abs()
     }
 
+    /// Whether the vertex may scatter in a direction of any length: what reflects alone does not scatter to the side of the
+    /// surface that the walk did not come from.
+    #[inline]
+    pub fn faces(&self, next: Vec3) -> bool {
+        let normal = self.point.normal;
+        normal.dot(next) * normal.dot(self.prev) > 0.0 || self.bsdf.transmits()
+    }
+
     /// Scattering between the previous vertex and the unit direction `next`, the Dirac part left out.
     /// `None` if it is zero.
     #[inline]

@@ -51,6 +51,10 @@ impl Kernel<'_> {
             return None;
         }
         let d = z.point.position - y.point.position;
+        // What is behind a surface is found out before anything is evaluated: it is most of all.
+        if !y.faces(d) || !z.faces(-d) {
+            return None;
+        }
         let length_squared = d.length_squared();
         if length_squared <= 0.0 {
             return None;
