@@ -20,7 +20,7 @@ SCENES = ["final", "glass", "long-way", "inverted", "bulb", "gap", "many-lamps",
 # The reference work: samples a pixel, hours, and the resolution that is supposed.
 CLASSIC_SAMPLES, CLASSIC_HOURS, CLASSIC_SIZE = 5000, 4, "800x600"
 # A bidirectional path tracer of the usual kind: independent samples, roulette after three bounces, no rays that are aimed.
-CLASSIC = ["--sampler", "independent", "--roulette-depth", "3", "--aimed-rays", "0"]
+CLASSIC = ["--sampler", "independent", "--roulette-depth", "3", "--aimed-rays", "0", "--shared-light-paths", "1"]
 TIMED_PASSES = 8
 SEEDS = 3
 
