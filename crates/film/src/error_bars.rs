@@ -107,7 +107,8 @@ impl ErrorBars {
 
     /// The error of the whole picture: 1.96 times the root mean square of the errors of luminance, each relative to the
     /// mean brightness of the 15 × 15 pixels around, which counts as a tenth of the picture's mean at least. It is an
-    /// upper bound of 95 % certainty, which matters for small pictures only. `None` of a black picture, about which
+    /// upper bound of 95 % certainty, which matters for small pictures only (and counts pixels as independent of each
+    /// other, which they are not quite where they share light paths). `None` of a black picture, about which
     /// nothing is known.
     pub fn relative(&self) -> Option<f64> {
         let degrees = self.of_luminance.len() as f64;

@@ -48,6 +48,7 @@ fn settings(choices: &mut Choices) -> Settings {
         sampler: [Sampler::Sobol, Sampler::Independent][choices.below(2)],
         heuristic: [Heuristic::Balance, Heuristic::Power][choices.below(2)],
         exhaustive_weights: choices.once_in(8),
+        shared_light_paths: [1, 2, 4, 16][choices.below(4)],
         strategies: choices.pick(&sets).parse().expect("a set of strategies"),
         ..Settings::default()
     }

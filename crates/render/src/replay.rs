@@ -21,7 +21,7 @@ pub struct Replay {
     pub eye: [f32; 3],
     /// What it adds to the light image, and where.
     pub splats: Vec<Splat>,
-    /// Each strategy's contribution; only `bdpt` tells them.
+    /// Each strategy's contribution, a strategy that joins light paths once for each of them; only `bdpt` tells them.
     pub contributions: Vec<StrategyRecord>,
 }
 

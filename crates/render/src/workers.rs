@@ -118,17 +118,17 @@ impl Workers<'_> {
     }
 }
 
-/// The tiles of a pass.
+/// The tiles of a pass. They begin at multiples of their size, wherever the window does, so that they hold whole groups of
+/// pixels that share light paths.
 fn tiles(w: Window) -> Vec<Window> {
-    let steps = |start: u32, size: u32| (start..start + size).step_by(TILE as usize);
+    let steps = |start: u32, size: u32| {
+        let end = start + size;
+        let first = start / TILE * TILE;
+        (first..end).step_by(TILE as usize).map(move |at| (at.max(start), at.saturating_add(TILE).min(end)))
+    };
     steps(w.y, w.height)
-        .flat_map(|y| {
-            steps(w.x, w.width).map(move |x| Window {
-                x,
-                y,
-                width: TILE.min(w.x + w.width - x),
-                height: TILE.min(w.y + w.height - y),
-            })
+        .flat_map(|(y, bottom)| {
+            steps(w.x, w.width).map(move |(x, right)| Window { x, y, width: right - x, height: bottom - y })
         })
         .collect()
 }

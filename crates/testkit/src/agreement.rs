@@ -100,6 +100,9 @@ pub fn estimate(scene: &Scene, settings: &Settings, plan: Plan) -> Estimate {
     let kernel = Kernel::new(scene, settings.clone());
     let window = scene.film.window();
     let (columns, rows) = (window.width.div_ceil(plan.block), window.height.div_ceil(plan.block));
+    let all =
+        (0..window.width * window.height).map(|i| [window.x + i % window.width, window.y + i / window.width]);
+    let pixels = kernel.in_groups(all);
     let passes: Vec<Vec<f64>> = (0..plan.passes)
         .into_par_iter()
         .map_init(Scratch::default, |scratch, pass| {
@@ -111,11 +114,9 @@ pub fn estimate(scene: &Scene, settings: &Settings, plan: Plan) -> Estimate {
                 pixel: [0, 0],
                 only: plan.only,
             };
-            for y in window.y..window.y + window.height {
-                for x in window.x..window.x + window.width {
-                    sink.pixel = [x, y];
-                    kernel.sample([x, y], pass, scratch, &mut sink);
-                }
+            for &pixel in &pixels {
+                sink.pixel = pixel;
+                kernel.sample(pixel, pass, scratch, &mut sink);
             }
             sink.sums
         })

@@ -8,7 +8,8 @@
 //! with scattering taken as light travels, both cosines on the light's side, and geometric normals in G. A vertex
 //! at infinity is measured by direction: its edge has no 1/d² and no cosine there. Strategy s = i makes the path
 //! with a density pᵢ(x), in the product of the vertices' own measures, and tries nᵢ times: once, or for i = k as
-//! often as the window has pixels, or for 2 ≤ i < k with as many light paths as pixels share. Its estimate must be f/(nᵢ·pᵢ), its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
+//! often as the window has pixels, or for 2 ≤ i < k with as many light paths as pixels share. Its estimate must be
+//! f/(nᵢ·pᵢ), its weight (nᵢ·pᵢ)^β/Σ(nⱼ·pⱼ)^β.
 //!
 //! The point on the lens has the same density in every strategy and is left out of both f and pᵢ. So are
 //! Dirac distributions: each smooth surface puts one δ(to_light) into f and into every density, and what stands

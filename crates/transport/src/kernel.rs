@@ -42,8 +42,9 @@ pub struct Settings {
     /// How many rays `bdpt` aims at mirrors and glass from each point of an eye path from where no other strategy makes
     /// a path; at most [`Settings::MOST_AIMED_RAYS`]. Weights that add up all strategies go without.
     pub aimed_rays: u32,
-    /// How many light paths `bdpt` joins each eye path with: its own and those of pixels some way off. A power of two, at
-    /// most [`Settings::MOST_SHARED_LIGHT_PATHS`]; anything else counts as the next that is smaller.
+    /// How many light paths `bdpt` joins each eye path with: its own and those of pixels some way off. A power of two from
+    /// 1 to [`Settings::MOST_SHARED_LIGHT_PATHS`]; anything else counts as the next that is smaller (0 as 1). There may be
+    /// fewer in windows of less than eight pixels in width or height, see [`Kernel::shared_light_paths`].
     pub shared_light_paths: u32,
 }
 
@@ -102,7 +103,7 @@ pub struct Kernel<'a> {
     pub(crate) wavelengths: Wavelengths,
     pub(crate) needs: Needs,
     pub(crate) groups: Groups,
-    /// How many light paths each eye path is joined with; zero if the set has no strategy that does.
+    /// How many light paths each eye path is joined with; zero if there is no strategy that does.
     pub(crate) joins: f32,
     /// Like that of no other kernel, so that buffers know whose paths they hold.
     pub(crate) number: u64,
@@ -139,7 +140,8 @@ impl<'a> Kernel<'a> {
         }
         let exhaustive = settings.exhaustive_weights || settings.strategies.classes().is_none();
         let classes = settings.strategies.touched();
-        let groups = Groups::new(window, if classes.inner { settings.shared_light_paths } else { 1 });
+        let joins = classes.inner && settings.integrator == Integrator::Bdpt;
+        let groups = Groups::new(window, if joins { settings.shared_light_paths } else { 1 });
         let aims = !exhaustive && !scene.casters().is_empty();
         Self {
             scene,
@@ -153,7 +155,7 @@ impl<'a> Kernel<'a> {
             light_paths: window.width as f32 * window.height as f32,
             wavelengths: Wavelengths::Rgb,
             needs: Needs::of(scene),
-            joins: if classes.inner { groups.size() as f32 } else { 0.0 },
+            joins: if joins { groups.size() as f32 } else { 0.0 },
             groups,
             number: KERNELS.fetch_add(1, Ordering::Relaxed),
             settings,
@@ -190,7 +192,8 @@ impl<'a> Kernel<'a> {
     }
 
     /// Renders one sample: one eye path through `pixel` (of the full picture) and, where the integrator has
-    /// them, one light path. Calls [`Sink::eye`] once, unless the integrator has no eye paths.
+    /// them, one light path; the eye path is joined with those of other pixels, too, see
+    /// [`Settings::shared_light_paths`]. Calls [`Sink::eye`] once, unless the integrator has no eye paths.
     pub fn sample<S: Sink>(&self, pixel: [u32; 2], sample: u32, scratch: &mut Scratch, sink: &mut S) {
         let id = SampleId { seed: self.settings.seed, pixel, sample };
         match self.settings.integrator {

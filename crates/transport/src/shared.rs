@@ -2,7 +2,7 @@
 //!
 //! An eye path can be joined with the light paths of other pixels as well as with that of its own: each of n joins makes
 //! one of n estimates, as in the light vertex cache of Davidovič et al. ("Progressive Light Transport Simulation on the
-//! GPU: Survey and Improvements", 2014), but from a few paths that are known beforehand. The pixels of a [`Group`] lend
+//! GPU: Survey and Improvements", 2014), but from a few paths that are known beforehand. The pixels of a group lend
 //! each other the paths of the same sample, so any range of samples is still whole, and each sample still depends on
 //! nothing but its number. They lie apart, so that what they have in common is not seen as blotches.
 //!
@@ -18,21 +18,27 @@ use crate::kernel::Kernel;
 use crate::numbers::LightNumbers;
 use crate::walk::{Start, Subpath, emission_flight};
 
-/// The pixels of a group differ in bits of their place in the window, at most so far apart.
+/// The pixels of a group are at most so far apart in x or in y.
 const FARTHEST: u32 = 8;
 
-/// Which pixels of a window share their light paths.
+/// Which pixels share their light paths.
 #[derive(Clone, Debug)]
 pub(crate) struct Groups {
-    window: Crop,
-    /// By which bits of x and y each pixel's partners differ.
-    flips: Vec<[u32; 2]>,
+    flips: Vec<Flip>,
+}
+
+/// A bit of x or y (0 in the other) in which the pixels of a group differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Flip {
+    bits: [u32; 2],
+    /// The bit in which neighbours differ whose numbers they have instead.
+    near: [u32; 2],
 }
 
 /// A light path, of which several eye paths make use.
 #[derive(Debug, Default)]
 pub(crate) struct LightPath {
-    /// Of the sample that it belongs to; perhaps beyond the window.
+    /// That of the sample which it belongs to; perhaps beyond the window.
     pub pixel: [u32; 2],
     pub emission: Option<Emission>,
     pub path: Subpath,
@@ -43,29 +49,31 @@ pub(crate) struct LightPath {
 pub(crate) struct LightPaths {
     /// The kernel, the group's first pixel, and the sample, if there are any.
     of: Option<(u64, [u32; 2], u32)>,
-    pub paths: Vec<LightPath>,
+    paths: Vec<LightPath>,
 }
 
 impl Groups {
-    /// Groups of `size` pixels (if not a power of two, the next that is smaller), or as many as the window allows.
+    /// Groups of `size` pixels (if not a power of two, the next that is smaller), or of as many as suit a small window.
     pub fn new(window: Crop, size: u32) -> Self {
-        let stride = |pixels: u32| if pixels < 2 { 0 } else { FARTHEST.min(1 << (pixels - 1).ilog2()) };
+        // So near that few groups reach beyond the window: two of them lie side by side in it, at the least.
+        let stride =
+            |pixels: u32| if pixels < 2 { 0 } else { FARTHEST.min(1 << (pixels / 4).max(1).ilog2()) };
         let (x, y) = (stride(window.width), stride(window.height));
-        let mut flips = vec![[x, 0], [0, y], [x / 2, 0], [0, y / 2]];
-        flips.retain(|flip| *flip != [0, 0]);
+        let flip = |bits, near| Flip { bits, near };
+        let mut flips = vec![
+            flip([x, 0], [1, 0]),
+            flip([0, y], [0, 1]),
+            flip([x / 2, 0], [2, 0]),
+            flip([0, y / 2], [0, 2]),
+        ];
+        flips.retain(|flip| flip.bits != [0, 0]);
         flips.truncate(size.max(1).ilog2() as usize);
-        Self { window, flips }
+        Self { flips }
     }
 
-    /// The bits of x and y in which the pixels of a group differ.
-    fn mask(&self) -> [u32; 2] {
-        self.flips.iter().fold([0, 0], |all, flip| [all[0] | flip[0], all[1] | flip[1]])
-    }
-
-    /// A pixel's place in the window, with those bits cleared.
+    /// The pixel of a group in which all bits are zero in which its pixels differ.
     fn first(&self, pixel: [u32; 2]) -> [u32; 2] {
-        let mask = self.mask();
-        [(pixel[0] - self.window.x) & !mask[0], (pixel[1] - self.window.y) & !mask[1]]
+        self.flips.iter().fold(pixel, |[x, y], flip| [x & !flip.bits[0], y & !flip.bits[1]])
     }
 
     /// The pixels of a pixel's group, some of which may lie beyond the window.
@@ -73,8 +81,7 @@ impl Groups {
         let first = self.first(pixel);
         (0..self.size()).map(move |i| {
             let flipped = self.flips.iter().enumerate().filter(|(bit, _)| i >> bit & 1 == 1);
-            let [x, y] = flipped.fold(first, |[x, y], (_, flip)| [x ^ flip[0], y ^ flip[1]]);
-            [self.window.x + x, self.window.y + y]
+            flipped.fold(first, |[x, y], (_, flip)| [x ^ flip.bits[0], y ^ flip.bits[1]])
         })
     }
 
@@ -86,16 +93,10 @@ impl Groups {
     /// The pixel whose numbers the light path of a pixel has: those of neighbours, which are stratified jointly, go to the
     /// pixels of one group.
     pub fn numbers_of(&self, pixel: [u32; 2]) -> [u32; 2] {
-        let mut place = [pixel[0] - self.window.x, pixel[1] - self.window.y];
-        for (i, flip) in self.flips.iter().enumerate() {
-            let near = 1 << (i / 2);
-            for axis in 0..2 {
-                if flip[axis] > near {
-                    place[axis] = exchanged(place[axis], near, flip[axis]);
-                }
-            }
-        }
-        [self.window.x + place[0], self.window.y + place[1]]
+        let exchange = |at: u32, near: u32, far: u32| if far > near { exchanged(at, near, far) } else { at };
+        self.flips.iter().fold(pixel, |[x, y], flip| {
+            [exchange(x, flip.near[0], flip.bits[0]), exchange(y, flip.near[1], flip.bits[1])]
+        })
     }
 }
 
@@ -109,15 +110,17 @@ impl Kernel<'_> {
     /// [`Kernel::sample`], with one [`Scratch`], grows each path once. What it finds does not depend on the order.
     pub fn in_groups(&self, pixels: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
         let mut pixels: Vec<_> = pixels.collect();
-        pixels.sort_by_cached_key(|pixel| {
-            let [x, y] = self.groups.first(*pixel);
-            (y, x)
-        });
+        if self.groups.size() > 1 {
+            pixels.sort_by_cached_key(|pixel| {
+                let [x, y] = self.groups.first(*pixel);
+                (y, x)
+            });
+        }
         pixels
     }
 
     /// With how many light paths each eye path is joined: as many as [`Settings`](crate::Settings) say, but for windows of
-    /// fewer pixels, and one where no strategy joins them.
+    /// less than eight pixels in width or height, and one where nothing is joined.
     pub fn shared_light_paths(&self) -> u32 {
         self.groups.size()
     }
@@ -128,18 +131,18 @@ impl Kernel<'_> {
         LightNumbers::new(self.settings.sampler, id, self.needs)
     }
 
-    /// Grows the light paths of a sample's group, if they are not there already.
-    pub(crate) fn grow_light_paths(&self, id: SampleId, lights: &mut LightPaths) {
+    /// The light paths of a sample's group, which are grown if they are not there already.
+    pub(crate) fn grow_light_paths<'l>(&self, id: SampleId, lights: &'l mut LightPaths) -> &'l [LightPath] {
         let of = Some((self.number, self.groups.first(id.pixel), id.sample));
-        if lights.of == of {
-            return;
+        if lights.of != of {
+            lights.of = of;
+            lights.paths.resize_with(self.groups.size() as usize, LightPath::default);
+            for (one, pixel) in lights.paths.iter_mut().zip(self.groups.of(id.pixel)) {
+                one.pixel = pixel;
+                one.emission = self.light_path(SampleId { pixel, ..id }, &mut one.path);
+            }
         }
-        lights.of = of;
-        lights.paths.resize_with(self.groups.size() as usize, LightPath::default);
-        for (one, pixel) in lights.paths.iter_mut().zip(self.groups.of(id.pixel)) {
-            one.pixel = pixel;
-            one.emission = self.light_path(SampleId { pixel, ..id }, &mut one.path);
-        }
+        &lights.paths
     }
 
     /// Emits and grows the light path of a sample.
@@ -151,5 +154,78 @@ impl Kernel<'_> {
         let flight = emission_flight(&emission);
         self.grow(flight, &Start::Light(&emission), &mut numbers, path);
         Some(emission)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    const SIZES: [u32; 5] = [1, 2, 4, 8, 16];
+    const WINDOWS: [[u32; 2]; 8] = [[64, 48], [8, 8], [9, 9], [5, 1], [64, 1], [1, 64], [2, 3], [1, 1]];
+
+    fn window([width, height]: [u32; 2]) -> Crop {
+        Crop { x: 5, y: 3, width, height }
+    }
+
+    /// Pixels around a window, in whole blocks that no group leaves.
+    fn around() -> impl Iterator<Item = [u32; 2]> {
+        (0..96 * 96).map(|i| [i % 96, i / 96])
+    }
+
+    #[test]
+    fn a_pixel_is_in_the_group_of_each_of_its_partners() {
+        for (size, of) in SIZES.into_iter().flat_map(|size| WINDOWS.map(|of| (size, of))) {
+            let groups = Groups::new(window(of), size);
+            assert!(
+                groups.size() <= size && (groups.size() == size || of[0] * of[1] < 64 || of.contains(&1))
+            );
+            for pixel in around() {
+                let group: BTreeSet<_> = groups.of(pixel).collect();
+                assert_eq!(group.len() as u32, groups.size());
+                assert!(group.contains(&pixel));
+                assert!(group.iter().all(|p| groups.of(*p).eq(groups.of(pixel))));
+            }
+        }
+    }
+
+    #[test]
+    fn groups_have_the_numbers_of_neighbours_and_none_is_had_twice() {
+        for (size, of) in SIZES.into_iter().flat_map(|size| WINDOWS.map(|of| (size, of))) {
+            let groups = Groups::new(window(of), size);
+            let numbers: BTreeSet<_> = around().map(|pixel| groups.numbers_of(pixel)).collect();
+            assert_eq!(numbers, around().collect());
+            for pixel in around() {
+                // An aligned block: as wide and high as there are bits of x and y to choose.
+                let bits = |axis: usize| groups.flips.iter().filter(|f| f.bits[axis] > 0).count();
+                let place = |pixel| {
+                    let [x, y] = groups.numbers_of(pixel);
+                    [x >> bits(0), y >> bits(1)]
+                };
+                assert!(groups.of(pixel).all(|partner| place(partner) == place(pixel)), "{size} of {of:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn few_light_paths_lie_beyond_a_window() {
+        for (size, [width, height]) in SIZES.into_iter().flat_map(|size| WINDOWS.map(|of| (size, of))) {
+            let window = window([width, height]);
+            let groups = Groups::new(window, size);
+            let pixels = || (0..width * height).map(|i| [window.x + i % width, window.y + i / width]);
+            let grown: BTreeSet<_> = pixels().flat_map(|pixel| groups.of(pixel)).collect();
+            assert!(
+                grown.len() as u32 <= 4 * width * height,
+                "{size} of {width} × {height}: {}",
+                grown.len()
+            );
+        }
+        // Of windows of usual sizes there are but few.
+        let groups = Groups::new(Crop { x: 0, y: 0, width: 400, height: 300 }, 4);
+        let grown: BTreeSet<_> =
+            (0..400 * 300).flat_map(|i| groups.of([i % 400, i / 400]).collect::<Vec<_>>()).collect();
+        assert!(grown.len() < 400 * 300 * 103 / 100);
     }
 }

@@ -39,6 +39,9 @@ candidates-unpaid|transport|s/let value = c.value \* (1.0 \/ survival);/let valu
 stratum-shared|math|s/key: mix64(of_tile.wrapping_add(u64::from(walk) << 16)),/key: of_tile,/|-p caustica-transport --test samplers
 aimed-unshared|transport|s/let density = scatter.forward.0 + self.aimed_rays.*/let density = scatter.forward.0;/|$identity
 aimed-too-often|transport|s/junction, value \* share);/junction, value); let _ = share;/|$identity
+joins-uncounted|transport|s/step.joins \* inverse/inverse/|$identity
+joins-not-shared|transport|s/(edge.falloff \/ self.joins)/edge.falloff/|$identity
+joins-of-one-side|transport|s/y.sums.total(junction.light.0 \/ self.joins,/y.sums.total(junction.light.0,/|$identity
 pyramid-remainder|render|s/if i == last { left } else/if false { left } else/|-p caustica-render --test pyramid
 seed-ignored|transport|s/seed: self.settings.seed,/seed: 0,/|$rows seeds
 TABLE

@@ -1,13 +1,15 @@
 //! Light paths that pixels share: which, how often, and what that gains.
 
 use std::collections::BTreeSet;
+use std::f32::consts::PI;
 
-use caustica_math::stats::{Moments, sidak, welch_t_test};
-use caustica_math::{Filter, Rgb, Vec2};
+use caustica_math::elementary::sin;
+use caustica_math::stats::{Moments, sidak, student_t_test};
+use caustica_math::{Rgb, Vec2};
 use caustica_scene::Scene;
-use caustica_scene::description::Crop;
+use caustica_scene::description::{CameraKind, Crop};
 use caustica_testkit::agreement::flatten;
-use caustica_testkit::scenes::{ball, glass_kind};
+use caustica_testkit::scenes::{ball, glass_kind, point_furnace};
 use caustica_testkit::seed::seed;
 use caustica_transport::{Contribution, Kernel, Scratch, Settings, Sink};
 
@@ -69,10 +71,11 @@ fn samples_do_not_depend_on_what_was_asked_for_before() {
             let (kernel, other) = (Kernel::new(&scene, settings(shared)), Kernel::new(&scene, settings(4)));
             let mut scratch = Scratch::default();
             let order = kernel.in_groups(pixels(window));
-            assert_eq!(
-                order.iter().collect::<BTreeSet<_>>(),
-                pixels(window).collect::<Vec<_>>().iter().collect()
-            );
+            let sorted = |mut all: Vec<[u32; 2]>| {
+                all.sort_unstable();
+                all
+            };
+            assert_eq!(sorted(order.clone()), sorted(pixels(window).collect()));
             for pixel in order {
                 for sample in [0, 5] {
                     let after_others = heard(&kernel, pixel, sample, &mut scratch);
@@ -96,51 +99,60 @@ fn eye_paths_meet_as_many_light_paths_as_are_told() {
         // Of one sample, some light paths may find nothing that the eye path sees.
         let met = samples.map(|(pixel, sample)| heard(&kernel, pixel, sample, &mut scratch).lamps.len());
         let most = met.max().unwrap() as u32;
-        assert!(most <= shared && 4 * most > 3 * shared, "{most} of {shared}");
+        assert!(most <= shared && 2 * most > shared, "{most} of {shared}");
     }
 }
 
 /// Weights count light paths, and a light path splats into the pixels of others: the mean shows it if they are not counted
-/// alike, as in windows in which groups do not fit. Significance: 10⁻³ in all.
+/// alike, as in windows in which groups do not fit. Seen from the centre of a sphere around a point light, k edges bring
+/// ½^(k−1). Significance: 10⁻³ in all.
 #[test]
 fn windows_of_any_size_show_the_same_light() {
-    let mut means = Vec::new();
-    for (part, (width, shared)) in [(16, 1), (16, 4), (11, 4), (11, 16), (5, 8)].into_iter().enumerate() {
-        let mut d = ball(glass_kind(false));
+    const LONGEST: u32 = 4;
+    let expected: f64 = (2..=LONGEST).map(|k| 0.5_f64.powi(k as i32 - 1)).sum();
+    let parts = [(16, 1), (16, 4), (11, 4), (11, 16), (9, 8), (5, 2)];
+    for (part, (width, shared)) in parts.into_iter().enumerate() {
+        let mut d = point_furnace(1);
         (d.film.width, d.film.height) = (width, width);
-        d.film.filter = Filter::Box { radius: 0.5 };
+        d.camera.kind = CameraKind::Environment;
         let scene = flatten(d);
-        let settings = Settings { seed: seed(20 + part as u64), max_depth: Some(4), ..settings(shared) };
+        let settings =
+            Settings { seed: seed(20 + part as u64), max_depth: Some(LONGEST), ..settings(shared) };
         let (kernel, mut scratch) = (Kernel::new(&scene, settings), Scratch::default());
-        let window = Crop { x: 0, y: 0, width, height: width };
+        assert_eq!(kernel.shared_light_paths(), shared);
+        let order = kernel.in_groups(pixels(Crop { x: 0, y: 0, width, height: width }));
         let mut moments = Moments::default();
-        for pass in 0..40_000 / (width * width) {
-            let mut sum = Sum::default();
-            for pixel in kernel.in_groups(pixels(window)) {
-                kernel.sample(pixel, pass, &mut scratch, &mut sum);
+        for pass in 0..80_000 / (width * width) {
+            let mut sum = Sum { height: width as f32, sum: 0.0 };
+            for pixel in &order {
+                kernel.sample(*pixel, pass, &mut scratch, &mut sum);
             }
-            moments.push(sum.0 / f64::from(width * width));
+            moments.push(sum.sum / f64::from(width * width));
         }
         println!("{width}, {shared}: {} ± {}", moments.mean, moments.variance_of_mean().sqrt());
-        means.push(moments);
-    }
-    let alpha = sidak(1e-3, means.len() - 1);
-    for other in &means[1..] {
-        assert!(welch_t_test(&means[0], other, 0.0) > alpha, "{} and {}", means[0].mean, other.mean);
+        // The sphere is a mesh: by so much it may be no sphere.
+        let is_close = (moments.mean / expected - 1.0).abs() < 5e-4;
+        let p = student_t_test(&moments, expected);
+        assert!(is_close || p > sidak(1e-3, parts.len()), "{width}, {shared}: {}, p = {p:.1e}", moments.mean);
     }
 }
 
-/// All the light of a picture.
-#[derive(Default)]
-struct Sum(f64);
+/// The mean over all directions of what an environment camera sees, times its pixels.
+struct Sum {
+    height: f32,
+    sum: f64,
+}
 
 impl Sink for Sum {
-    fn eye(&mut self, value: Rgb) {
-        self.0 += f64::from(value.0[1]);
-    }
+    const PROBES: bool = true;
 
-    fn splat(&mut self, _: Vec2, value: Rgb) {
-        self.0 += f64::from(value.0[1]);
+    fn eye(&mut self, _: Rgb) {}
+
+    fn splat(&mut self, _: Vec2, _: Rgb) {}
+
+    fn contribution(&mut self, c: &Contribution<'_>) {
+        let solid_angle = sin(PI * c.film.y / self.height) * 0.5 * PI;
+        self.sum += f64::from(c.unweighted[1] * c.weight * solid_angle);
     }
 }
 

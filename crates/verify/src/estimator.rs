@@ -83,18 +83,20 @@ impl Estimator {
         (0..=class.edges()).any(made)
     }
 
-    /// How often its eye paths make a path, and how often its light image does, over how often all strategies together
-    /// do, given the weights that all strategies have for it; roulette aside.
-    pub fn shares(&self, weights: &[f32]) -> [f64; 2] {
+    /// How often its eye paths make a path by themselves, how often they do by joining a light path, and how often its
+    /// light image does, over how often all strategies together do, given the weights that all strategies have for it;
+    /// roulette aside.
+    pub fn shares(&self, weights: &[f32]) -> [f64; 3] {
         let edges = weights.len() as u32 - 1;
         let weight = |s: u32| f64::from(weights[s as usize]);
         let emitters = matches!(self.settings.integrator, Integrator::Path(Technique::Emitters));
         // It leaves hits to next-event estimation wherever that can be.
         if emitters && edges > 1 && weights[1] > 0.0 {
-            return [weight(1), 0.0];
+            return [weight(1), 0.0, 0.0];
         }
         let share = |s: std::ops::Range<u32>| s.filter(|s| self.has(*s, edges).is_some()).map(weight).sum();
-        [share(0..edges), share(edges..edges + 1)]
+        let alone = edges.min(2);
+        [share(0..alone), share(alone..edges), share(edges..edges + 1)]
     }
 }
 
@@ -128,12 +130,13 @@ mod tests {
             all.iter().find(|e| e.name == name).map(|e| e.shares(weights)).unwrap_or_default()
         };
         let weights = [0.125, 0.25, 0.375, 0.25];
-        assert_eq!(shares("bdpt", &weights), [0.75, 0.25]);
-        assert_eq!(shares("naive", &weights), [0.125, 0.0]);
-        assert_eq!(shares("path_ems", &weights), [0.25, 0.0]);
-        assert_eq!(shares("path_ems", &[0.125, 0.0, 0.5, 0.375]), [0.125, 0.0]);
-        assert_eq!(shares("light", &weights), [0.0, 0.25]);
-        assert_eq!(shares("bdpt, s>=2&t>=2", &weights), [0.375, 0.0]);
-        assert_eq!(shares("light", &[1.0, 0.0, 0.0, 0.0]), [0.0, 0.0]);
+        assert_eq!(shares("bdpt", &weights), [0.375, 0.375, 0.25]);
+        assert_eq!(shares("naive", &weights), [0.125, 0.0, 0.0]);
+        assert_eq!(shares("path_ems", &weights), [0.25, 0.0, 0.0]);
+        assert_eq!(shares("path_ems", &[0.125, 0.0, 0.5, 0.375]), [0.125, 0.0, 0.0]);
+        assert_eq!(shares("light", &weights), [0.0, 0.0, 0.25]);
+        assert_eq!(shares("bdpt, s>=2&t>=2", &weights), [0.0, 0.375, 0.0]);
+        assert_eq!(shares("bdpt, t>=2", &[0.5, 0.25, 0.25]), [0.75, 0.0, 0.0]);
+        assert_eq!(shares("light", &[1.0, 0.0, 0.0, 0.0]), [0.0, 0.0, 0.0]);
     }
 }

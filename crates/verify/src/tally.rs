@@ -118,16 +118,17 @@ impl Powers {
         moments[2] += value.abs() * size * size;
     }
 
-    /// Adds what is found by both walks in those shares of all findings. `rarities` is by how much rarer a walk finds
-    /// it for other reasons.
-    fn divide(&mut self, block: usize, value: f64, shares: [f64; WALKS], rarities: [f64; WALKS]) {
+    /// Adds what is found in those shares of all findings (see [`Estimator::shares`]). `rarities` is by how much rarer it
+    /// is found for other reasons.
+    fn divide(&mut self, block: usize, value: f64, shares: [f64; 3], rarities: [f64; 3]) {
+        const WALK_OF: [usize; 3] = [0, 0, 1];
         let own: f64 = shares.iter().sum();
         if own.is_nan() || own <= 0.0 {
             self.add((block, 0), value, RAREST);
             return;
         }
-        for walk in (0..WALKS).filter(|w| shares[*w] > 0.0) {
-            self.add((block, walk), value * (shares[walk] / own), rarities[walk] / own);
+        for i in (0..3).filter(|i| shares[*i] > 0.0) {
+            self.add((block, WALK_OF[i]), value * (shares[i] / own), rarities[i] / own);
         }
     }
 
@@ -276,14 +277,20 @@ impl Probe<'_, '_> {
     }
 }
 
-/// How often eye paths and light paths find a path that was found, adding up to one.
-fn by_walk(c: &Contribution<'_>) -> [f64; WALKS] {
-    let all: f64 = c.weights.iter().map(|w| f64::from(*w)).sum();
-    let light = match c.weights.last() {
-        Some(weight) if all > 0.0 => f64::from(*weight) / all,
-        _ => f64::from(u8::from(c.strategy.t == 1)),
-    };
-    [1.0 - light, light]
+/// How often eye paths by themselves, joined paths and light paths find a path that was found, adding up to one.
+fn by_all(c: &Contribution<'_>) -> [f64; 3] {
+    let finder = |s: usize, edges: usize| if s == edges { 2 } else { usize::from(s > 1) };
+    let mut shares = [0.0; 3];
+    for (s, weight) in c.weights.iter().enumerate() {
+        shares[finder(s, c.weights.len() - 1)] += f64::from(*weight);
+    }
+    let all: f64 = shares.iter().sum();
+    if all > 0.0 {
+        return shares.map(|share| share / all);
+    }
+    let (s, t) = (c.strategy.s as usize, c.strategy.t as usize);
+    shares[finder(s, s + t - 1)] = 1.0;
+    shares
 }
 
 impl Sink for Probe<'_, '_> {
@@ -316,15 +323,20 @@ impl Sink for Probe<'_, '_> {
         let reach = self.reach(&class);
         let share: f64 = self.parts.iter().map(|p| p.1).sum();
         self.learned.classes.entry(class).or_default().add(luminance * share);
-        // What a light path spreads over pixels, eye paths find whole in some of them.
-        let rarities = |part: f64| match c.strategy.t {
-            1 => [1.0 / part.abs().min(1.0), 1.0],
-            _ => [1.0, self.sparsity],
+        // What a light path spreads over pixels, eye paths find whole in some of them. Joins with several light paths are
+        // no finds by themselves: they have the eye path in common.
+        let joins = f64::from(self.render.kernel.shared_light_paths());
+        let rarities = |part: f64| {
+            let (eye, light) = match c.strategy.t {
+                1 => (1.0 / part.abs().min(1.0), 1.0),
+                _ => (1.0, self.sparsity),
+            };
+            [eye, eye * joins, light]
         };
         let by_both = self.learned.by_reach.entry(reach).or_insert_with(|| Powers::new(grid.blocks()));
         let parts = || self.parts.iter().filter(|p| p.1 != 0.0);
         for &(block, part) in parts() {
-            by_both.divide(block, luminance * part, by_walk(c), rarities(part));
+            by_both.divide(block, luminance * part, by_all(c), rarities(part));
         }
         for (i, estimator) in self.estimators.iter().enumerate().filter(|(i, _)| reach >> i & 1 != 0) {
             let shares = estimator.shares(c.weights);

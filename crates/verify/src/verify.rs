@@ -194,8 +194,9 @@ impl Run<'_> {
             let sparsity = sparsity(kernel.filter());
             let (camera, parts) = (self.camera(), Vec::new());
             let mut probe = Probe { render, learned, estimators, camera, sparsity, parts };
+            let pixels = kernel.in_groups(self.grid.each_pixel());
             for pass in 0..passes {
-                for pixel in self.grid.each_pixel() {
+                for &pixel in &pixels {
                     probe.render.pixel = pixel;
                     kernel.sample(pixel, pass, &mut scratch, &mut probe);
                 }
@@ -234,8 +235,9 @@ impl Run<'_> {
                 picture: Picture::new(&self.grid),
                 pixel: [0; 2],
             };
+            let pixels = kernel.in_groups(self.grid.each_pixel());
             for pass in 0..self.passes {
-                for pixel in self.grid.each_pixel() {
+                for &pixel in &pixels {
                     sink.pixel = pixel;
                     kernel.sample(pixel, pass, &mut scratch, &mut sink);
                 }

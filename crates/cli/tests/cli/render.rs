@@ -61,6 +61,7 @@ fn files_lie_beside_the_scene_and_say_what_they_hold() {
         ("heuristic", "balance"),
         ("maxDepth", "unlimited"),
         ("rouletteDepth", "1"),
+        ("sharedLightPaths", "4"),
         ("scene", "scene.xml"),
         ("version", env!("CARGO_PKG_VERSION")),
     ] {

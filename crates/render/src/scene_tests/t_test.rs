@@ -191,9 +191,10 @@ fn emitters(stage: &Description) -> Vec<(Option<Origin>, Description)> {
 /// Estimates of the film's mean luminance.
 fn film_means(scene: &Scene, integrator: Integrator, block: Block, values: &mut [f64]) {
     // The t-test counts every sample as independent of the others.
-    let sampler = Sampler::Independent;
-    let kernel =
-        Kernel::new(scene, Settings { integrator, seed: block.seed, sampler, ..Settings::default() });
+    let (sampler, shared_light_paths) = (Sampler::Independent, 1);
+    let settings =
+        Settings { integrator, seed: block.seed, sampler, shared_light_paths, ..Settings::default() };
+    let kernel = Kernel::new(scene, settings);
     let mut scratch = Scratch::default();
     let window = scene.film.window();
     for (i, value) in values.iter_mut().enumerate() {

@@ -110,10 +110,7 @@ impl Kernel<'_> {
         if classes.hit || classes.next_event || classes.inner {
             self.grow(Self::camera_flight(&ray), &Start::Camera, &mut numbers, eye);
         }
-        if classes.splat || classes.inner {
-            self.grow_light_paths(id, lights);
-        }
-        let lights = &lights.paths[..];
+        let lights = if classes.splat || classes.inner { self.grow_light_paths(id, lights) } else { &[] };
         let own = lights.iter().position(|light| light.pixel == id.pixel);
         for failed in [eye.failed, own.is_some_and(|own| lights[own].path.failed)] {
             if failed {

@@ -115,8 +115,9 @@ impl Survey {
                 pixel: [0; 2],
                 places: Vec::new(),
             };
+            let pixels = kernel.in_groups(Grid::new(scene, 1).each_pixel());
             for pass in 0..passes {
-                for pixel in Grid::new(scene, 1).each_pixel() {
+                for &pixel in &pixels {
                     listener.pixel = pixel;
                     kernel.sample(pixel, pass, &mut scratch, &mut listener);
                     if pass == 0 {
