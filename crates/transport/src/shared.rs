@@ -107,7 +107,7 @@ fn exchanged(x: u32, a: u32, b: u32) -> u32 {
 
 impl Kernel<'_> {
     /// The pixels of a window or a part of it in an order in which those that share light paths follow each other: then
-    /// [`Kernel::sample`], with one [`Scratch`], grows each path once. What it finds does not depend on the order.
+    /// [`Kernel::sample`], with one [`Scratch`](crate::Scratch), grows each path once. What it finds does not depend on the order.
     pub fn in_groups(&self, pixels: impl Iterator<Item = [u32; 2]>) -> Vec<[u32; 2]> {
         let mut pixels: Vec<_> = pixels.collect();
         if self.groups.size() > 1 {

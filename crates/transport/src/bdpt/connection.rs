@@ -31,7 +31,7 @@ impl Kernel<'_> {
                     break;
                 }
                 if y.is_connectible() {
-                    self.connection::<S>(sample, light, (j + 2, i + 2), (y, z), candidates);
+                    self.connection::<S>(sample, (light, j + 2, i + 2), (y, z), candidates);
                 }
             }
         }
@@ -41,8 +41,7 @@ impl Kernel<'_> {
     fn connection<S: Sink>(
         &self,
         sample: &Sample<'_>,
-        light: usize,
-        (s, t): (usize, usize),
+        (light, s, t): (usize, usize, usize),
         (y, z): (&Vertex, &Vertex),
         candidates: &mut Candidates,
     ) -> Option<()> {

@@ -34,7 +34,7 @@ impl Kernel<'_> {
         for (i, vertex) in path.vertices.iter().enumerate() {
             if vertex.is_connectible()
                 && let Some((value, film)) =
-                    self.splat_vertex(sample, light, (i, vertex), numbers.lens(i), sink)
+                    self.splat_vertex(sample, light, (i, vertex, numbers.lens(i)), sink)
             {
                 self.splat(film, value, sink);
             }
@@ -104,8 +104,7 @@ impl Kernel<'_> {
         &self,
         sample: &Sample<'_>,
         (own, emission): (usize, &Emission),
-        (i, y): (usize, &Vertex),
-        lens: [f32; 2],
+        (i, y, lens): (usize, &Vertex, [f32; 2]),
         sink: &mut S,
     ) -> Option<(Spectrum, Vec2)> {
         let strategy = Strategy { s: i as u32 + 2, t: 1 };
