@@ -19,7 +19,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SCENES = ["final", "glass", "long-way", "inverted", "bulb", "gap", "many-lamps", "veach-mi", "cornell", "furnace"]
 # The reference work: samples a pixel, hours, and the resolution that is supposed.
 CLASSIC_SAMPLES, CLASSIC_HOURS, CLASSIC_SIZE = 5000, 4, "800x600"
-# A bidirectional path tracer of the usual kind: independent samples, roulette after three bounces, no rays that are aimed.
+# A bidirectional path tracer of the usual kind: independent samples, one light path for each eye path, roulette after
+# three bounces, no rays that are aimed.
 CLASSIC = ["--sampler", "independent", "--roulette-depth", "3", "--aimed-rays", "0", "--shared-light-paths", "1"]
 TIMED_PASSES = 8
 SEEDS = 3
@@ -99,10 +100,11 @@ resolution is not told; {CLASSIC_SIZE.replace("x", " × ")} is supposed.
 | samples that have the error of the classic one's {CLASSIC_SAMPLES} | {needed:.0f} |
 | time of these | **{hours(needed, seconds)}** |
 
-*Classic* is ours with independent samples, without aimed rays and with roulette after three bounces:
-`{" ".join(CLASSIC)}`. It still looks for lamps by solid angle and leaves out what
-is negligible. Times are those of {TIMED_PASSES} passes, scaled: every pass takes the same. Errors are measured at {options.size.replace("x", " × ")}, without the
-reference's own, and taken to fall as one over the number of samples; that ours fall a little faster is not counted.
+*Classic* is ours with independent samples, one light path for each eye path, without aimed rays and with roulette after
+three bounces: `{" ".join(CLASSIC)}`. It still looks for
+lamps by solid angle and leaves out what is negligible. Times are those of {TIMED_PASSES} passes, scaled: every pass takes the same.
+Errors are measured at {options.size.replace("x", " × ")}, without the reference's own, and taken to fall as one over the number of samples; that
+ours fall a little faster is not counted.
 """
 
 
