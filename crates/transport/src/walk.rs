@@ -245,10 +245,14 @@ impl Kernel<'_> {
     }
 }
 
+/// Russian roulette of both walks of `bdpt` spares paths of which more than 1/`LIVES` is left: of 1, 1.2, 1.4, 2 and 3,
+/// relative variance times time was least for 1.4, all in all.
+const LIVES: f32 = 1.4;
+
 /// Russian roulette by what is left of the throughput.
 #[inline]
 fn survives(flight: &mut Flight, first_throughput: f32, u: f32) -> bool {
-    let left = flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
+    let left = LIVES * flight.throughput.max_lane() / (flight.radiance_scale * first_throughput);
     let survival = if left > MAX_SURVIVAL { MAX_SURVIVAL } else { left };
     if !is_planted(Fault::Roulette) {
         flight.throughput *= 1.0 / survival;
