@@ -1,13 +1,13 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use caustica::Settings;
 use caustica::description::{Crop, Integrator, Layer, LayerKind};
 use caustica::film::{self, ToneMap};
 use caustica::math::Sampler;
 use caustica::scene::bvh::TreeQuality;
 use caustica::session::{INTEGRATOR_NAMES, MOST_LAYER_SAMPLES};
-use caustica::transport::{Heuristic, StrategySet};
+use caustica::transport::{Heuristic, StrategySet, suited_light_paths};
+use caustica::{Scene, Settings};
 use caustica_clips::Layout;
 use caustica_compare::{DEFAULT_METHODS, EYE_ONLY};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -443,10 +443,10 @@ pub struct Sampling {
     #[arg(long, value_name = "N", default_value_t = Settings::default().aimed_rays,
         value_parser = clap::value_parser!(u32).range(0..=i64::from(Settings::MOST_AIMED_RAYS)))]
     pub aimed_rays: u32,
-    /// Light paths that bdpt joins each eye path with: its own and those of pixels some way off (a power of two). More cost
-    /// more time a sample, and pay where most light is indirect
-    #[arg(long, value_name = "N", default_value_t = Settings::default().shared_light_paths, value_parser = parse_shared)]
-    pub shared_light_paths: u32,
+    /// Light paths that bdpt joins each eye path with: its own and those of pixels some way off (1, 2, 4, 8 or 16). More cost
+    /// more time a sample, and pay where most light is indirect [default: 1 to 8, as a first look at the scene advises]
+    #[arg(long, value_name = "N", value_parser = parse_shared)]
+    pub shared_light_paths: Option<u32>,
     /// How the strategies of bdpt are weighed
     #[arg(long, value_enum, default_value_t = HeuristicChoice::Balance)]
     pub heuristic: HeuristicChoice,
@@ -463,6 +463,13 @@ impl Sampling {
         }
     }
 
+    /// The same with as many shared light paths as suit the scene where nothing else is said.
+    #[must_use]
+    pub fn suited(&self, scene: &Scene) -> Self {
+        let suited = || suited_light_paths(scene, &self.settings(Integrator::Bdpt));
+        Self { shared_light_paths: Some(self.shared_light_paths.unwrap_or_else(suited)), ..*self }
+    }
+
     /// The settings of an integrator that is sampled so, with all strategies.
     pub fn settings(&self, integrator: Integrator) -> Settings {
         Settings {
@@ -473,7 +480,7 @@ impl Sampling {
             sampler: self.sampler.into(),
             heuristic: self.heuristic.into(),
             aimed_rays: self.aimed_rays,
-            shared_light_paths: self.shared_light_paths,
+            shared_light_paths: self.shared_light_paths.unwrap_or(Settings::default().shared_light_paths),
             ..Settings::default()
         }
     }
@@ -487,7 +494,10 @@ impl Sampling {
             ("max depth", depth),
             ("roulette depth", roulette),
             ("aimed rays", self.aimed_rays.to_string()),
-            ("shared light paths", self.shared_light_paths.to_string()),
+            (
+                "shared light paths",
+                self.shared_light_paths.map_or_else(|| "as usual".to_owned(), |n| n.to_string()),
+            ),
             ("seed", self.seed.to_string()),
             ("sampler", self.sampler.to_possible_value().map(name).unwrap_or_default()),
             ("heuristic", self.heuristic.to_possible_value().map(name).unwrap_or_default()),

@@ -42,7 +42,7 @@ struct Told<'a> {
 
 pub fn run(args: &Compare, console: &mut Console) -> Result<ExitCode, Failure> {
     let opened = loading::open(&args.source, console)?;
-    let args = &Compare { sampling: args.sampling.or(opened.depths), ..args.clone() };
+    let args = &Compare { sampling: args.sampling.or(opened.depths).suited(&opened.scene), ..args.clone() };
     let scene = &opened.scene;
     let folder = args.output.clone().unwrap_or_else(|| args.source.beside("-compare"));
     let page = folder.join("index.html");

@@ -27,7 +27,7 @@ pub fn run(args: &Explain, console: &mut Console) -> Result<ExitCode, Failure> {
     let chosen = integrator(&args.integrator, &scene).unwrap_or(Integrator::Bdpt);
     let question = Question {
         region: args.region,
-        settings: args.sampling.or(depths).settings(chosen),
+        settings: args.sampling.or(depths).suited(&scene).settings(chosen),
         samples: args.spp,
         threads: args.source.threads.map(usize::from),
         names: &names,

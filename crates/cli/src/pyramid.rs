@@ -42,7 +42,7 @@ struct Files {
 
 pub fn run(args: &Arguments, console: &mut Console) -> Result<ExitCode, Failure> {
     let opened = loading::open(&args.source, console)?;
-    let args = &Arguments { sampling: args.sampling.or(opened.depths), ..args.clone() };
+    let args = &Arguments { sampling: args.sampling.or(opened.depths).suited(&opened.scene), ..args.clone() };
     let files = Files::new(args)?;
     let options = RenderOptions {
         settings: args.sampling.settings(Integrator::Bdpt),

@@ -6,6 +6,7 @@ use caustica::film::{Channel, FilmFacts, Provenance, write_exr, write_png};
 use caustica::scene::Diagnostic;
 use caustica::scene::camera::Joins;
 use caustica::session::{Stages, content_hash, integrator_by_name, integrator_name, provenance};
+use caustica::transport::suited_light_paths;
 use caustica::{LightImage, Picture, Progress, RenderOptions, Report, Scene, Session, Settings};
 use serde::Serialize;
 
@@ -117,7 +118,12 @@ pub fn settings(method: &Method, scene: &Scene, (asked, depths): (Integrator, De
         // If the scene asks for the same, it may have set its parameters.
         .filter(|i| integrator_name(i) != integrator_name(&asked));
     let sampling = method.sampling.or(depths);
-    Settings { strategies: method.strategies.clone(), ..sampling.settings(named.unwrap_or(asked)) }
+    let strategies = method.strategies.clone();
+    let mut settings = Settings { strategies, ..sampling.settings(named.unwrap_or(asked)) };
+    if settings.integrator == Integrator::Bdpt && sampling.shared_light_paths.is_none() {
+        settings.shared_light_paths = suited_light_paths(scene, &settings);
+    }
+    settings
 }
 
 /// The integrator of that name, with parameters that suit the scene.

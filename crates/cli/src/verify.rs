@@ -38,7 +38,7 @@ struct Told<'a> {
 
 pub fn run(args: &Verify, console: &mut Console) -> Result<ExitCode, Failure> {
     let (scene, _, depths) = open_small(&args.source, console)?;
-    let args = &Verify { sampling: args.sampling.or(depths), ..args.clone() };
+    let args = &Verify { sampling: args.sampling.or(depths).suited(&scene), ..args.clone() };
     let folder = args.output.clone().unwrap_or_else(|| args.source.beside("-verify"));
     let files = ["heat.png", "report.json", "index.html"].map(|name| folder.join(name));
     fs::create_dir_all(&folder)

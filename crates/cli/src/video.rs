@@ -62,7 +62,7 @@ pub fn run(args: &Video, console: &mut Console) -> Result<ExitCode, Failure> {
             converge(&opened.scene, &what, &options(&what.render.settings.integrator), control, frames)
         }
         Video::Pyramid(a) => {
-            let settings = a.sampling.or(opened.depths).settings(Integrator::Bdpt);
+            let settings = a.sampling.or(opened.depths).suited(&opened.scene).settings(Integrator::Bdpt);
             let render = render(clip, settings, a.spp.unwrap_or(opened.samples));
             let what = PyramidClip { render, rows: a.rows, hold: a.hold };
             let options = options(&Integrator::Bdpt);

@@ -14,6 +14,7 @@ mod layers;
 mod light_tracer;
 mod numbers;
 mod path_tracer;
+mod pilot;
 mod shared;
 pub mod sink;
 pub mod strategy;
@@ -24,6 +25,7 @@ pub mod weight;
 
 pub use kernel::{Kernel, Scratch, Settings};
 pub use layers::Seen;
+pub use pilot::suited_light_paths;
 pub use sink::{Contribution, PathView, Sink};
 pub use strategy::{Strategy, StrategySet};
 pub use subpaths::Subpaths;

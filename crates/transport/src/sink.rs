@@ -56,6 +56,9 @@ pub struct Contribution<'a> {
     pub filter_weight: f32,
     /// The path.
     pub path: PathView<'a>,
+    /// Which of the light paths that the eye path is joined with has the light vertices: below
+    /// [`Kernel::shared_light_paths`](crate::Kernel::shared_light_paths); 0 where there are none.
+    pub light_path: usize,
     /// The weight of each strategy that could have made the path, by its s, with the balance heuristic: in proportion
     /// to how often it does, roulette aside. Empty unless the sink [weighs all](Sink::WEIGHS_ALL).
     pub weights: &'a [f32],

@@ -61,13 +61,26 @@ fn files_lie_beside_the_scene_and_say_what_they_hold() {
         ("heuristic", "balance"),
         ("maxDepth", "unlimited"),
         ("rouletteDepth", "1"),
-        ("sharedLightPaths", "4"),
         ("scene", "scene.xml"),
         ("version", env!("CARGO_PKG_VERSION")),
     ] {
         assert_eq!(facts.get(name), Some(value), "{name}");
     }
     assert!(facts.get("seconds").unwrap().parse::<f64>().unwrap() > 0.0);
+}
+
+#[test]
+fn films_tell_how_many_light_paths_were_shared() {
+    let bench = Bench::new();
+    let shared = |args: &[&str]| {
+        let (_, facts) = bench.render("a", args);
+        facts.get("sharedLightPaths").map(str::to_owned)
+    };
+    // Above a floor alone, hardly any light is found by joins.
+    let advised = shared(&[]);
+    assert_eq!(advised.as_deref(), Some("1"));
+    assert_eq!(shared(&["--seed", "3", "--threads", "1"]), advised);
+    assert_eq!(shared(&["--shared-light-paths", "8"]).as_deref(), Some("8"));
 }
 
 #[test]

@@ -174,6 +174,7 @@ impl Kernel<'_> {
                 weight: 1.0,
                 film: sample.film,
                 filter_weight: sample.filter_weight,
+                light_path: 0,
                 path: PathView { lamp, light: &[], eye: chain.eye, camera: sample.camera },
                 weights: &weights,
             });

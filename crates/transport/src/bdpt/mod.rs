@@ -193,6 +193,7 @@ impl Kernel<'_> {
             weight,
             film: joined.film,
             filter_weight: if t == 1 { self.scene.camera.response() } else { sample.filter_weight },
+            light_path: joined.light,
             path: PathView {
                 lamp: joined.lamp,
                 light: sample.light_vertices(joined),
