@@ -10,6 +10,9 @@ use caustica_verify as verify;
 /// Samples a pixel of every render: as many units of work, so that two threads share them.
 const SAMPLES: u32 = 3;
 
+/// Edges of the longest paths of these, if there is no other limit: verifying weighs all pairs of vertices of each path.
+const LONGEST_TO_AGREE: u32 = 32;
+
 /// Samples a pixel of the renders that must agree.
 const SAMPLES_TO_AGREE: u32 = 16;
 
@@ -48,7 +51,7 @@ fn settings(choices: &mut Choices) -> Settings {
         sampler: [Sampler::Sobol, Sampler::Independent][choices.below(2)],
         heuristic: [Heuristic::Balance, Heuristic::Power][choices.below(2)],
         exhaustive_weights: choices.once_in(8),
-        shared_light_paths: [1, 2, 4, 16][choices.below(4)],
+        shared_light_paths: [1, 2, 4, 8, 16][choices.below(5)],
         strategies: choices.pick(&sets).parse().expect("a set of strategies"),
         ..Settings::default()
     }
@@ -68,7 +71,7 @@ fn is_moderate(scene: &Scene) -> bool {
 /// All integrators and strategies find the same light, as far as they reach it.
 fn integrators_agree(scene: &Scene, settings: &Settings) {
     let options = verify::Options {
-        settings: settings.clone(),
+        settings: Settings { max_depth: settings.max_depth.or(Some(LONGEST_TO_AGREE)), ..settings.clone() },
         samples: SAMPLES_TO_AGREE,
         significance: FALSE_ALARM,
         threads: Some(2),

@@ -173,6 +173,17 @@ impl PixelFilter {
         }
     }
 
+    /// ∫f², of f without negative lobes: the noise of splats in a pixel, over that of a filter of one pixel that is flat.
+    pub fn square_integral(&self) -> f64 {
+        const STEPS: u16 = 256;
+        let value = |i| {
+            let (at, _) = self.sample([(f32::from(i) + 0.5) / f32::from(STEPS), 0.5]);
+            f64::from(self.eval_axis(at.x).abs())
+        };
+        let axis = (0..STEPS).map(value).sum::<f64>() / f64::from(STEPS);
+        axis * axis
+    }
+
     /// The position of a sample, from the centre of its pixel, with density proportional to the
     /// filter's magnitude; and the sample's weight: the filter's sign there times the integral of its
     /// magnitude, which is exactly 1 for filters that are nowhere negative.

@@ -137,3 +137,28 @@ fn tiles(w: Window) -> Vec<Window> {
 pub(crate) fn pixels(tile: Window) -> impl Iterator<Item = [u32; 2]> {
     (tile.y..tile.y + tile.height).flat_map(move |y| (tile.x..tile.x + tile.width).map(move |x| [x, y]))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn tiles_cover_each_pixel_once_and_begin_at_multiples_of_their_size() {
+        for (x, y, width, height) in [(0, 0, 64, 48), (5, 3, 1, 1), (17, 31, 40, 2), (15, 16, 18, 33)] {
+            let window = Window { x, y, width, height };
+            let tiles = tiles(window);
+            let all: Vec<[u32; 2]> = tiles.iter().flat_map(|tile| pixels(*tile)).collect();
+            assert_eq!(all.len() as u32, width * height);
+            assert_eq!(
+                all.iter().collect::<BTreeSet<_>>(),
+                pixels(window).collect::<Vec<_>>().iter().collect()
+            );
+            let of = |at: u32| at / TILE;
+            assert!(
+                tiles.iter().all(|t| of(t.x) == of(t.x + t.width - 1) && of(t.y) == of(t.y + t.height - 1))
+            );
+        }
+    }
+}

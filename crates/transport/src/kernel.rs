@@ -44,7 +44,8 @@ pub struct Settings {
     pub aimed_rays: u32,
     /// How many light paths `bdpt` joins each eye path with: its own and those of pixels some way off. A power of two from
     /// 1 to [`Settings::MOST_SHARED_LIGHT_PATHS`]; anything else counts as the next that is smaller (0 as 1). There may be
-    /// fewer in windows of less than eight pixels in width or height, see [`Kernel::shared_light_paths`].
+    /// fewer in windows of less than eight pixels in width or height, see [`Kernel::shared_light_paths`]. How many
+    /// pay depends on the scene: [`suited_light_paths`](crate::suited_light_paths) advises on it.
     pub shared_light_paths: u32,
 }
 
@@ -142,6 +143,8 @@ impl<'a> Kernel<'a> {
         let classes = settings.strategies.touched();
         let joins = classes.inner && settings.integrator == Integrator::Bdpt;
         let groups = Groups::new(window, if joins { settings.shared_light_paths } else { 1 });
+        // As many as there are.
+        settings.shared_light_paths = groups.size();
         let aims = !exhaustive && !scene.casters().is_empty();
         Self {
             scene,

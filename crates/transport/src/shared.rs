@@ -52,10 +52,17 @@ pub(crate) struct LightPaths {
     paths: Vec<LightPath>,
 }
 
+impl LightPaths {
+    /// Those that were grown last.
+    pub fn paths(&self) -> &[LightPath] {
+        &self.paths
+    }
+}
+
 impl Groups {
     /// Groups of `size` pixels (if not a power of two, the next that is smaller), or of as many as suit a small window.
     pub fn new(window: Crop, size: u32) -> Self {
-        // So near that few groups reach beyond the window: two of them lie side by side in it, at the least.
+        // So near that few groups reach beyond the window: it is wide enough for two of them, but for the smallest.
         let stride =
             |pixels: u32| if pixels < 2 { 0 } else { FARTHEST.min(1 << (pixels / 4).max(1).ilog2()) };
         let (x, y) = (stride(window.width), stride(window.height));

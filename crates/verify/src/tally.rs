@@ -244,13 +244,7 @@ pub struct Probe<'k, 's> {
 /// By how much rarer and larger the parts of a splat are than what an eye path finds of the same light, if the filter
 /// is narrower than a pixel, so that most splats miss all pixels: ∫f².
 pub fn sparsity(filter: &PixelFilter) -> f64 {
-    const STEPS: u16 = 256;
-    let value = |i| {
-        let (at, _) = filter.sample([(f32::from(i) + 0.5) / f32::from(STEPS), 0.5]);
-        f64::from(filter.eval_axis(at.x).abs())
-    };
-    let axis = (0..STEPS).map(value).sum::<f64>() / f64::from(STEPS);
-    (axis * axis).clamp(1.0, RAREST)
+    filter.square_integral().clamp(1.0, RAREST)
 }
 
 /// What an estimator practically never finds counts as this much rarer than all strategies together find it.
